@@ -54,6 +54,19 @@ impl Failure {
     pub fn usage(why: impl Display) -> Self {
         Self::Usage(why.to_string())
     }
+
+    /// Returns the failure of work that was stopped before it had any result.
+    pub fn stopped() -> Self {
+        Self::Interrupted("interrupted before anything was measured".into())
+    }
+
+    /// Returns `None` in place of the failure of work that was stopped.
+    pub fn unless_stopped<T>(done: Result<T, Self>) -> Result<Option<T>, Self> {
+        match done {
+            Err(Self::Interrupted(_)) => Ok(None),
+            done => done.map(Some),
+        }
+    }
 }
 
 /// The message, without its kind.
@@ -69,6 +82,13 @@ impl Display for Failure {
 impl From<InputError> for Failure {
     fn from(error: InputError) -> Self {
         Self::Input(error)
+    }
+}
+
+/// An error of a run is a failure of the work.
+impl From<a3_core::Error> for Failure {
+    fn from(error: a3_core::Error) -> Self {
+        Self::run(error)
     }
 }
 

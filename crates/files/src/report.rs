@@ -24,6 +24,11 @@ impl Report {
     }
 }
 
+/// Returns the first row of a table: its headings, which are separated by bars.
+pub fn headings(words: &str) -> Vec<Vec<String>> {
+    vec![words.split('|').map(String::from).collect()]
+}
+
 /// Number of characters of a line of text, and of a table whose last column can be wrapped.
 pub(crate) const WIDTH: usize = 80;
 /// Least number of characters to which a last column is wrapped.

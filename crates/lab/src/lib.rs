@@ -14,7 +14,6 @@
 pub mod chart;
 pub mod choose;
 pub mod compare;
-pub mod figure_file;
 pub mod judge;
 pub mod motion;
 pub mod simplify;

@@ -54,16 +54,10 @@ impl Axis {
         let marks = [0.0, 2_f64.log10(), 5_f64.log10(), 1.0];
         let [low, high] = [low, high].map(|end| end.max(f64::MIN_POSITIVE).log10());
         let (low, high) = (low - 0.03, high + 0.03);
-        let down = low.floor()
-            + marks
-                .into_iter()
-                .rfind(|m| *m <= low - low.floor())
-                .unwrap_or(0.0);
-        let up = high.floor()
-            + marks
-                .into_iter()
-                .find(|m| *m >= high - high.floor())
-                .unwrap_or(1.0);
+        let below = |m: &f64| *m <= low - low.floor();
+        let above = |m: &f64| *m >= high - high.floor();
+        let down = low.floor() + marks.into_iter().rfind(below).unwrap_or(0.0);
+        let up = high.floor() + marks.into_iter().find(above).unwrap_or(1.0);
         Self {
             log: true,
             short: false,
@@ -151,17 +145,13 @@ impl Axis {
             long if self.short && long.len() > 6 => format!("{value:.1e}"),
             label => label,
         };
-        let (first, last) = (
-            (self.ends[0] / step).ceil() as i64,
-            (self.ends[1] / step).floor() as i64,
-        );
-        (first..=last)
-            .map(|k| k as f64 * step)
-            .map(|value| Tick {
-                value,
-                label: label(value).replace('-', "−"),
-            })
-            .collect()
+        let [first, last] = [(self.ends[0] / step).ceil(), (self.ends[1] / step).floor()];
+        let values = (first as i64..=last as i64).map(|k| k as f64 * step);
+        let tick = |value: f64| Tick {
+            value,
+            label: label(value).replace('-', "−"),
+        };
+        values.map(tick).collect()
     }
 }
 

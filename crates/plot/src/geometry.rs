@@ -22,8 +22,23 @@ impl Rect {
     }
 
     /// Creates the square around a point whose half side is `r`.
-    pub(crate) fn around([x, y]: Point, r: f64) -> Self {
-        Self::new(x - r, y - r, x + r, y + r)
+    pub(crate) fn around(at: Point, r: f64) -> Self {
+        Self::spread(at, r, r)
+    }
+
+    /// Creates the rectangle around a point whose half sides are these.
+    pub(crate) fn spread([x, y]: Point, across: f64, up: f64) -> Self {
+        Self::new(x - across, y - up, x + across, y + up)
+    }
+
+    /// Returns the rectangle with other left and right edges.
+    pub(crate) fn across(self, x0: f64, x1: f64) -> Self {
+        Self { x0, x1, ..self }
+    }
+
+    /// Returns the rectangle with another lower edge.
+    pub(crate) fn down_to(self, y1: f64) -> Self {
+        Self { y1, ..self }
     }
 
     pub(crate) fn width(self) -> f64 {

@@ -104,12 +104,8 @@ pub fn wrap(text: &str, size: f64, room: f64) -> Vec<String> {
 pub fn headings(figure: &mut Figure, [title, subtitle, foot]: [&str; 3], level: Level) -> Rect {
     let sheet = figure.sheet();
     let margin = level.size;
-    let mut left = Rect::new(
-        margin,
-        0.8 * margin,
-        sheet.x1 - margin,
-        sheet.y1 - 0.6 * margin,
-    );
+    let (x1, y1) = (sheet.x1 - margin, sheet.y1 - 0.6 * margin);
+    let mut left = Rect::new(margin, 0.8 * margin, x1, y1);
     let parts = [
         (title, 1.45, true),
         (if level.full { subtitle } else { "" }, 1.0, false),
@@ -118,26 +114,20 @@ pub fn headings(figure: &mut Figure, [title, subtitle, foot]: [&str; 3], level: 
         let size = factor * level.size;
         for line in wrap(text, size, left.width()) {
             let label = Label::new(&line, size);
-            figure.text(
-                [left.x0, left.y0 + 0.8 * size],
-                if bold {
-                    label.bold()
-                } else {
-                    label.colour(GREY)
-                },
-            );
+            let label = if bold {
+                label.bold()
+            } else {
+                label.colour(GREY)
+            };
+            figure.text([left.x0, left.y0 + 0.8 * size], label);
             left.y0 += 1.25 * size;
         }
     }
     let size = 0.85 * level.size;
-    for line in wrap(if level.full { foot } else { "" }, size, left.width())
-        .iter()
-        .rev()
-    {
-        figure.text(
-            [left.x0, left.y1 - 0.3 * size],
-            Label::new(line, size).colour(GREY),
-        );
+    let foot = if level.full { foot } else { "" };
+    for line in wrap(foot, size, left.width()).iter().rev() {
+        let label = Label::new(line, size).colour(GREY);
+        figure.text([left.x0, left.y1 - 0.3 * size], label);
         left.y1 -= 1.25 * size;
     }
     left.y1 -= 0.4 * level.size;
@@ -151,11 +141,8 @@ pub type Sign<'a> = Box<dyn Fn(&mut Figure, Point) + 'a>;
 /// Draws a legend in columns at the top of the area, and reduces `area` to the part below it.
 pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], size: f64) {
     let (sign, gap) = (4.0 * size, 1.6 * size);
-    let longest = entries
-        .iter()
-        .map(|(name, _)| width(name, size))
-        .fold(0.0, f64::max)
-        .min(area.width() - sign - gap);
+    let names = entries.iter().map(|(name, _)| width(name, size));
+    let longest = names.fold(0.0, f64::max).min(area.width() - sign - gap);
     let column = sign + longest + gap;
     let fitting = ((area.width() + gap) / column).floor().max(1.0) as usize;
     // All rows have about equally many entries.
@@ -166,10 +153,8 @@ pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], 
         let y = area.y0 + (1.4 * (k / columns) as f64 + 0.7) * size;
         draw(figure, [x + 0.45 * sign, y]);
         figure.reserve(Rect::new(x, y - 0.5 * size, x + 0.9 * sign, y + 0.5 * size));
-        figure.text(
-            [x + sign, y + 0.34 * size],
-            Label::new(&elide(name, size, longest + 0.01), size),
-        );
+        let name = elide(name, size, longest + 0.01);
+        figure.text([x + sign, y + 0.34 * size], Label::new(&name, size));
     }
     area.y0 += (1.4 * rows as f64 + 0.7) * size;
 }
@@ -197,10 +182,9 @@ pub fn grid(n: usize, area: Rect, gap: f64, merit: impl Fn(Point) -> f64) -> (Ve
 
 /// Returns the width of the widest label of an axis.
 pub fn widest(axis: &Axis, size: f64) -> f64 {
-    axis.ticks(1.6 * size)
-        .iter()
-        .map(|tick| width(&tick.label, size))
-        .fold(0.0, f64::max)
+    let ticks = axis.ticks(1.6 * size);
+    let widths = ticks.iter().map(|tick| width(&tick.label, size));
+    widths.fold(0.0, f64::max)
 }
 
 /// Draws the grid, the frame and the labels of a panel; `numbers` tells whether x and y are
@@ -208,11 +192,8 @@ pub fn widest(axis: &Axis, size: f64) -> f64 {
 pub fn axes(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numbers: [bool; 2]) {
     figure.panels.push((area, [*x, *y]));
     let grid = |label: &str| {
-        let (colour, width) = if label.is_empty() {
-            ("#efefef", 0.045)
-        } else {
-            ("#d9d9d9", 0.07)
-        };
+        let styles = [("#d9d9d9", 0.07), ("#efefef", 0.045)];
+        let (colour, width) = styles[usize::from(label.is_empty())];
         Pen::new(colour, width * size)
     };
     let (xs, ys) = (
@@ -242,10 +223,8 @@ pub fn axes(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numb
     }
     for tick in ys.iter().filter(|_| numbers[1]) {
         let label = Label::new(&tick.label, size).anchor(Anchor::End);
-        number(
-            [area.x0 - 0.4 * size, y.at(tick.value) + 0.34 * size],
-            label,
-        );
+        let at = [area.x0 - 0.4 * size, y.at(tick.value) + 0.34 * size];
+        number(at, label);
     }
 }
 
@@ -255,15 +234,10 @@ pub fn label_below(figure: &mut Figure, room: Rect, label: &str, better: &str, s
     let y = room.y1 - 0.3 * size;
     let mut x0 = room.x0;
     if !better.is_empty() {
-        figure.arrow(
-            [x0 + 2.0 * size, y - 0.28 * size],
-            [x0, y - 0.28 * size],
-            0.1 * size,
-        );
-        x0 = figure
-            .text([x0 + 2.4 * size, y], Label::new(better, size).colour(GREY))
-            .x1
-            + 1.5 * size;
+        let line = y - 0.28 * size;
+        figure.arrow([x0 + 2.0 * size, line], [x0, line], 0.1 * size);
+        let better = Label::new(better, size).colour(GREY);
+        x0 = figure.text([x0 + 2.4 * size, y], better).x1 + 1.5 * size;
     }
     let label = elide(label, size, room.x1 - x0);
     let half = width(&label, size) / 2.0;
@@ -282,27 +256,17 @@ pub fn label_left(figure: &mut Figure, room: Rect, label: &str, better: &str, si
     let label = if fits(label, arrow) { label } else { short };
     let mut y1 = room.y1;
     if !better.is_empty() && (fits(label, arrow) || !fits(label, 0.0)) {
-        figure.arrow(
-            [x - 0.28 * size, y1 - 2.0 * size],
-            [x - 0.28 * size, y1],
-            0.1 * size,
-        );
-        y1 = figure
-            .text(
-                [x, y1 - 2.4 * size],
-                Label::new(better, size).colour(GREY).turned(),
-            )
-            .y0
-            - 1.5 * size;
+        let line = x - 0.28 * size;
+        figure.arrow([line, y1 - 2.0 * size], [line, y1], 0.1 * size);
+        let better = Label::new(better, size).colour(GREY).turned();
+        y1 = figure.text([x, y1 - 2.4 * size], better).y0 - 1.5 * size;
     }
     let longest = y1 - room.y0;
     let label = elide(label, size, longest);
     let half = width(&label, size) / 2.0;
     let y = room.centre()[1].clamp(room.y0 + half, (y1 - half).max(room.y0 + half));
-    figure.text(
-        [x, y],
-        Label::new(&label, size).anchor(Anchor::Middle).turned(),
-    );
+    let label = Label::new(&label, size).anchor(Anchor::Middle);
+    figure.text([x, y], label.turned());
 }
 
 #[cfg(test)]

@@ -32,11 +32,7 @@ pub enum Marker {
 impl Default for CurveStyle {
     /// Creates a solid grey line with octagons.
     fn default() -> Self {
-        Self {
-            colour: "#777777",
-            dash: &[],
-            marker: Marker::Polygon(8, 0.0),
-        }
+        Self::new("#777777", &[], Marker::Polygon(8, 0.0))
     }
 }
 
@@ -52,6 +48,16 @@ pub(crate) enum Filling {
 }
 
 impl CurveStyle {
+    /// Creates a style.
+    #[must_use]
+    pub const fn new(colour: &'static str, dash: &'static [f64], marker: Marker) -> Self {
+        Self {
+            colour,
+            dash,
+            marker,
+        }
+    }
+
     /// Returns the pen of a line in this style.
     #[must_use]
     pub fn pen(self, width: f64) -> Pen {
@@ -78,10 +84,8 @@ impl CurveStyle {
             Filling::None => figure.area(vec![outline], open),
             Filling::Half => {
                 // The left half: points of the outline on the right are moved to the middle.
-                let left: Vec<_> = outline
-                    .iter()
-                    .map(|[x, y]| [x.min(centre[0]), *y])
-                    .collect();
+                let left = outline.iter().map(|[x, y]| [x.min(centre[0]), *y]);
+                let left: Vec<_> = left.collect();
                 figure.area(vec![outline], open);
                 figure.area(vec![left], Paint::fill(colour));
             }

@@ -56,11 +56,11 @@ pub fn drive(
     }
     done.map_err(|failed| {
         let (error, message) = *failed;
-        let raised =
-            matches!(error, Error::Callback(_)).then(|| raised.iter().find_map(Raised::take));
-        raised
-            .flatten()
-            .unwrap_or_else(|| of_error(py, &error, message))
+        let raised = match error {
+            Error::Callback(_) => raised.iter().find_map(Raised::take),
+            _ => None,
+        };
+        raised.unwrap_or_else(|| of_error(py, &error, message))
     })
 }
 
@@ -97,10 +97,8 @@ pub fn advance(run: &mut Simulation, time: f64, calls: bool, go_on: GoOn) -> Dri
 /// Checks that a run can advance to a time (s).
 pub fn check_time(run: &Simulation, time: f64) -> Result<(), String> {
     let now = run.time();
-    let most = match run.model().network() {
-        Some(_) => 1e9,
-        None => *OWN_HORIZONS.range.end(),
-    };
+    let own = *OWN_HORIZONS.range.end();
+    let most = run.model().network().map_or(own, |_| 1e9);
     if !(0.0..=most).contains(&time) {
         return Err(format!(
             "a time is a number of seconds from 0 to {most:e}, such as 10, not {time}"

@@ -37,6 +37,11 @@ pub fn of_failure(py: Python<'_>, failure: &Failure) -> PyErr {
     }
 }
 
+/// Returns what was made, or raises the exception of a failure.
+pub fn told<T>(py: Python<'_>, made: Result<T, Failure>) -> PyResult<T> {
+    made.map_err(|failure| of_failure(py, &failure))
+}
+
 /// Creates the exception for an error of a run. `message` has its words, and perhaps advice.
 pub fn of_error(py: Python<'_>, error: &Error, message: String) -> PyErr {
     match error {

@@ -196,27 +196,23 @@ fn read(result: &Bound<PyAny>, name: &str, shape: Shape, out: &mut [f64]) -> PyR
     };
     let array = array(result).ok_or_else(|| refuse(&kind(result)))?;
     if array.shape() != expected {
-        return Err(refuse(&format!(
-            "an array of shape {}",
-            tuple(array.shape())
-        )));
+        let found = tuple(array.shape());
+        return Err(refuse(&format!("an array of shape {found}")));
     }
     let readable = array.readonly();
     // A slice of an array in Fortran's order has its numbers in another order.
     let numbers = readable.as_slice().ok().filter(|_| array.is_c_contiguous());
     match (shape, numbers) {
-        (Shape::Flat | Shape::Pair | Shape::Square | Shape::Number, Some(numbers)) => {
-            out.copy_from_slice(numbers);
-        }
-        (Shape::Flat | Shape::Pair | Shape::Square | Shape::Number, None) => {
-            for (out, number) in out.iter_mut().zip(readable.as_array()) {
-                *out = *number;
-            }
-        }
         (Shape::Rows, _) => {
             let n = expected[0];
             for (k, number) in readable.as_array().iter().enumerate() {
                 out[k % 3 * n + k / 3] = *number;
+            }
+        }
+        (_, Some(numbers)) => out.copy_from_slice(numbers),
+        (_, None) => {
+            for (out, number) in out.iter_mut().zip(readable.as_array()) {
+                *out = *number;
             }
         }
     }
@@ -232,10 +228,8 @@ pub fn array<'py>(object: &Bound<'py, PyAny>) -> Option<Bound<'py, PyArrayDyn<f6
     let as_array = AS_ARRAY.import(object.py(), "numpy", "asarray").ok()?;
     let array = as_array.call1((object,)).ok()?;
     // Of complex numbers, half would be lost.
-    let array = array
-        .call_method1("astype", ("float64", "C", "same_kind"))
-        .ok()?;
-    array.cast_into().ok()
+    let array = array.call_method1("astype", ("float64", "C", "same_kind"));
+    array.ok()?.cast_into().ok()
 }
 
 /// Returns the name of an object's type, for errors.

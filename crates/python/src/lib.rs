@@ -16,7 +16,6 @@ mod own_system;
 mod program;
 mod run;
 mod scene;
-mod simplify;
 mod tables;
 mod turns;
 
@@ -26,6 +25,8 @@ mod _a3 {
     #[pymodule_export]
     use super::measures::{Chart, Stability, chart, choose, compare, judge, stability};
     #[pymodule_export]
+    use super::measures::{Simplified, simplify};
+    #[pymodule_export]
     use super::monitor::Monitor;
     #[pymodule_export]
     use super::own_method::{Derivative, add_adaptive, add_foreign, add_method, add_tableau};
@@ -34,8 +35,6 @@ mod _a3 {
     use super::program::main;
     #[pymodule_export]
     use super::run::Run;
-    #[pymodule_export]
-    use super::simplify::{Simplified, simplify};
     #[pymodule_export]
     use super::tables::{methods, scenes, table};
 }

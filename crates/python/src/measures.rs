@@ -1,4 +1,4 @@
-//! Charts, choices, limits and comparisons.
+//! Charts, choices, limits, comparisons, judgements, and what scenes can do without.
 
 use std::path::PathBuf;
 
@@ -6,47 +6,54 @@ use a3_core::accuracy::{Metric, SetBy};
 use a3_core::stability::Mode;
 use a3_core::{Control, Method};
 use a3_files::failure::Failure;
+use a3_files::quantity::Quantity;
 use a3_lab::chart::ChartOptions;
 use a3_lab::choose::{ChooseOptions, Goal};
 use a3_lab::judge::{JudgeOptions, StatesOf};
+use a3_lab::simplify::SimplifyOptions;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use super::errors::{of_failure, wrong};
+use super::errors::{of_failure, told, wrong};
 use super::function::Raised;
 use super::monitor::Monitor;
 use super::scene::{Given, Opened};
 use super::tables::{control, methods_named};
 
-/// Finds a metric by its name.
-fn metric(py: Python<'_>, name: Option<&str>) -> PyResult<Option<Metric>> {
-    let Some(name) = name else {
-        return Ok(None);
-    };
-    let all = || Metric::OF_PARTICLES.iter().copied().chain([Metric::State]);
-    all()
-        .find(|metric| metric.name() == name)
-        .map(Some)
-        .ok_or_else(|| {
-            let names: Vec<_> = all().map(Metric::name).collect();
-            wrong(
-                py,
-                format!(
-                    "there is no error `{name}`: the errors are {}",
-                    names.join(", ")
-                ),
-            )
-        })
+/// Finds one of the things of a kind by its name.
+fn named<T: Copy>(
+    py: Python<'_>,
+    name: &str,
+    (kind, kinds): (&str, &str),
+    all: impl IntoIterator<Item = T> + Clone,
+    name_of: fn(T) -> &'static str,
+) -> PyResult<T> {
+    let mut known = all.clone().into_iter();
+    let found = known.find(|it| name_of(*it) == name);
+    found.ok_or_else(|| {
+        let names = all.into_iter().map(name_of).collect::<Vec<_>>().join(", ");
+        let why = format!("there is no {kind} `{name}`: the {kinds} are {names}");
+        wrong(py, why)
+    })
 }
 
-/// Runs work without the global lock. If it failed because a function raised an exception, that is
-/// raised.
-pub fn work<T: Send>(
+/// Finds a metric by its name, if one is given.
+fn metric(py: Python<'_>, name: Option<&str>) -> PyResult<Option<Metric>> {
+    let all = Metric::OF_PARTICLES.into_iter().chain([Metric::State]);
+    let find = |name| named(py, name, ("error", "errors"), all, Metric::name);
+    name.map(find).transpose()
+}
+
+/// Runs work without the global lock, watched by a monitor. If it failed because a function raised
+/// an exception, that is raised.
+fn work<T: Send>(
     py: Python<'_>,
+    monitor: &Monitor,
     raised: &[Raised],
     work: impl Send + FnOnce() -> Result<T, Failure>,
 ) -> PyResult<T> {
+    monitor.watch(raised);
     py.detach(work).map_err(|failure| {
         let raised = raised.iter().find_map(Raised::take);
         raised.unwrap_or_else(|| of_failure(py, &failure))
@@ -55,24 +62,20 @@ pub fn work<T: Send>(
 
 /// A picture that can be drawn.
 type Draw<'a> = dyn Fn(u32, u32) -> Result<a3_plot::Figure, Failure> + Sync + 'a;
+/// A picture's file.
+type Drawn<'py> = PyResult<Bound<'py, PyBytes>>;
 
 /// Draws a picture of this kind: "svg", "pdf" or "png".
-pub fn drawn<'py>(
-    py: Python<'py>,
-    kind: &str,
-    (width, height): (u32, u32),
-    draw: &Draw,
-) -> PyResult<Bound<'py, PyBytes>> {
+fn drawn<'py>(py: Python<'py>, kind: &str, size: (u32, u32), draw: &Draw) -> Drawn<'py> {
     let bytes = py.detach(|| {
-        let figure = draw(width, height)?;
+        let figure = draw(size.0, size.1)?;
         match kind {
             "svg" => Ok(figure.svg().into_bytes()),
             "pdf" => Ok(figure.pdf()),
             _ => figure.png(1.0).map_err(Failure::run),
         }
     });
-    let bytes = bytes.map_err(|failure| of_failure(py, &failure))?;
-    Ok(PyBytes::new(py, &bytes))
+    Ok(PyBytes::new(py, &told(py, bytes)?))
 }
 
 /// A measured chart.
@@ -83,7 +86,7 @@ pub struct Chart(a3_lab::chart::Chart);
 impl Chart {
     /// Returns the runs, as JSON.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
-        self.0.json().map_err(|failure| of_failure(py, &failure))
+        told(py, self.0.json())
     }
 
     /// Returns the tables, as text.
@@ -103,11 +106,8 @@ impl Chart {
 
     /// Returns the names of the methods whose runs take too many evaluations.
     fn too_costly(&self) -> Vec<&'static str> {
-        self.0
-            .too_costly()
-            .iter()
-            .map(|method| method.name)
-            .collect()
+        let methods = self.0.too_costly().iter();
+        methods.map(|method| method.name).collect()
     }
 
     /// Returns the name of the error that counts, the end of the runs (s), and whether all were
@@ -117,12 +117,7 @@ impl Chart {
     }
 
     /// Draws a picture of a kind and a size (px).
-    fn drawn<'py>(
-        &self,
-        py: Python<'py>,
-        kind: &str,
-        size: (u32, u32),
-    ) -> PyResult<Bound<'py, PyBytes>> {
+    fn drawn<'py>(&self, py: Python<'py>, kind: &str, size: (u32, u32)) -> Drawn<'py> {
         drawn(py, kind, size, &|width, height| {
             self.0.figure(width, height)
         })
@@ -157,8 +152,7 @@ pub fn chart(
         stiffness,
     };
     let raised = opened.raised(methods.iter().copied());
-    monitor.watch(&raised);
-    work(py, &raised, || {
+    work(py, monitor, &raised, || {
         a3_lab::chart::chart(&scene, &methods, &options, monitor)
     })
     .map(Chart)
@@ -197,10 +191,8 @@ pub fn choose(
         (Some(error), None) => Goal::Error(error),
         (None, Some(budget)) => Goal::Budget(budget),
         _ => {
-            return Err(wrong(
-                py,
-                "choose takes either error (in m) or budget (in ms per frame)",
-            ));
+            let why = "choose takes either error (in m) or budget (in ms per frame)";
+            return Err(wrong(py, why));
         }
     };
     let opened = Opened::new(py, &given)?;
@@ -214,8 +206,7 @@ pub fn choose(
         ..ChooseOptions::new(goal)
     };
     let raised = opened.raised(methods.iter().copied());
-    monitor.watch(&raised);
-    let choice = work(py, &raised, || {
+    let choice = work(py, monitor, &raised, || {
         a3_lab::choose::choose(&scene, &methods, &options, monitor)
     })?;
     let chosen = |chosen: &a3_lab::choose::Chosen| {
@@ -247,7 +238,7 @@ pub struct Stability(a3_lab::stability::Stability);
 impl Stability {
     /// Returns the limits (s), as JSON.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
-        self.0.json().map_err(|failure| of_failure(py, &failure))
+        told(py, self.0.json())
     }
 
     /// Returns the table, as text.
@@ -280,7 +271,7 @@ impl Stability {
         kind: &str,
         size: (u32, u32),
         step: Option<f64>,
-    ) -> PyResult<Bound<'py, PyBytes>> {
+    ) -> Drawn<'py> {
         drawn(py, kind, size, &|width, height| {
             self.0.figure(step, width, height)
         })
@@ -298,8 +289,7 @@ pub fn stability(
     let opened = Opened::new(py, &given)?;
     let (scene, methods) = (opened.scene(py)?, methods_named(py, &methods)?);
     let raised = opened.raised(methods.iter().copied());
-    monitor.watch(&raised);
-    work(py, &raised, || {
+    work(py, monitor, &raised, || {
         a3_lab::stability::stability(&scene, &methods, monitor)
     })
     .map(Stability)
@@ -338,8 +328,7 @@ pub fn compare<'py>(
     });
     let asked = asked.collect::<PyResult<Vec<(&'static Method, Control)>>>()?;
     let raised = opened.raised(asked.iter().map(|(method, _)| *method));
-    monitor.watch(&raised);
-    let compared = work(py, &raised, || {
+    let compared = work(py, monitor, &raised, || {
         a3_lab::compare::compare(&scene, &asked, until, frames, monitor)
     })?;
     let runs = compared.runs.iter().map(|run| {
@@ -354,12 +343,8 @@ pub fn compare<'py>(
         )
     });
     let times = PyArray1::from_slice(py, &compared.times);
-    Ok((
-        times,
-        runs.collect(),
-        scene.model.particles(),
-        scene.state.len(),
-    ))
+    let (particles, length) = (scene.model.particles(), scene.state.len());
+    Ok((times, runs.collect(), particles, length))
 }
 
 /// Judges states: a file, or an archive of arrays with its name. Returns the judgement in words and
@@ -389,9 +374,78 @@ pub fn judge(
         within,
     };
     let raised = opened.raised([]);
-    monitor.watch(&raised);
-    let verdict = work(py, &raised, || {
+    let verdict = work(py, monitor, &raised, || {
         a3_lab::judge::judge_states(&scene, states, &options, monitor)
     })?;
     Ok((verdict.text, verdict.json))
+}
+
+/// What a scene can do without.
+#[pyclass(frozen, module = "a3_simulator._a3")]
+pub struct Simplified(a3_lab::simplify::Simplified);
+
+#[pymethods]
+impl Simplified {
+    /// Returns whether the chart of models was measured.
+    fn has_chart(&self) -> bool {
+        self.0.has_chart()
+    }
+
+    /// Returns all of it in words.
+    fn text(&self) -> String {
+        self.0.text()
+    }
+
+    /// Returns all of it as JSON.
+    fn json(&self, py: Python<'_>) -> PyResult<String> {
+        told(py, self.0.json())
+    }
+
+    /// Draws a picture of the chart of models, of a kind and a size (px).
+    fn drawn<'py>(&self, py: Python<'py>, kind: &str, size: (u32, u32)) -> Drawn<'py> {
+        drawn(py, kind, size, &|width, height| {
+            self.0.figure(width, height)?.ok_or_else(|| {
+                Failure::usage(
+                    "there is no chart: it needs chart=True, and a scene with grids that differ by less than the motion",
+                )
+            })
+        })
+    }
+}
+
+/// Finds what a scene can do without for an error.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "each is an option")]
+pub fn simplify(
+    py: Python<'_>,
+    given: Given,
+    monitor: &Monitor,
+    error: f64,
+    of: &str,
+    until: Option<f64>,
+    particle: Option<usize>,
+    at_end: bool,
+    data: Option<PathBuf>,
+    chart: bool,
+) -> PyResult<Simplified> {
+    let opened = Opened::new(py, &given)?;
+    if opened.calls {
+        let why = "what a scene can do without is found for scenes without functions of Python";
+        return Err(wrong(py, why));
+    }
+    let kind = ("quantity", "quantities");
+    let options = SimplifyOptions {
+        of: named(py, of, kind, Quantity::ALL, Quantity::name)?,
+        until,
+        particle,
+        at_end,
+        data,
+        chart,
+        ..SimplifyOptions::new(error)
+    };
+    let scene = &opened.scene;
+    work(py, monitor, &[], || {
+        a3_lab::simplify::simplify(&scene.described()?, &options, monitor)
+    })
+    .map(Simplified)
 }

@@ -12,7 +12,7 @@ use pyo3::types::PyType;
 use scoped_tls_hkt::scoped_thread_local;
 
 use super::arrays::numbers;
-use super::errors::wrong;
+use super::errors::{of_error, wrong};
 use super::function::{Function, Raised, Shape, array};
 
 /// f(t, y) of the system that is being stepped.
@@ -43,18 +43,15 @@ impl Derivative {
         y: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         if !STEPPED.is_set() {
-            return Err(wrong(
-                py,
-                "f can be called only while its step is being taken, in the same thread",
-            ));
+            let why = "f can be called only while its step is being taken, in the same thread";
+            return Err(wrong(py, why));
         }
         let array =
             array(y).ok_or_else(|| wrong(py, "f(t, y) takes a time and an array of numbers"))?;
         // A column of a matrix is not contiguous.
         let y: Vec<f64> = array.readonly().as_array().iter().copied().collect();
         let evaluated = py.detach(|| STEPPED.with(|f| f.evaluate(t, &y)));
-        let dydt =
-            evaluated.map_err(|error| super::errors::of_error(py, &error, error.to_string()))?;
+        let dydt = evaluated.map_err(|error| of_error(py, &error, error.to_string()))?;
         Ok(numbers(py, &dydt))
     }
 }
@@ -80,12 +77,9 @@ pub fn add_method(
             stepped(&function, f, (t, h), y, y.len())
         })
     };
-    let method = method.map_err(|error| wrong(py, error.to_string()))?;
-    let method = method
-        .with_evaluations(evaluations)
-        .with_default_step(default_step);
-    register(method, raised);
-    Ok(())
+    let with = |method: Method| method.with_evaluations(evaluations);
+    let method = method.map(|method| with(method).with_default_step(default_step));
+    register(py, method, raised).map(drop)
 }
 
 /// Registers a method that estimates its errors: `step` returns the state at t + h and the
@@ -105,9 +99,8 @@ pub fn add_adaptive(
         let estimate = next.split_off(y.len());
         Ok([next, estimate])
     });
-    let method = method.map_err(|error| wrong(py, error.to_string()))?;
-    register(method.with_evaluations(evaluations), raised);
-    Ok(())
+    let method = method.map(|method| method.with_evaluations(evaluations));
+    register(py, method, raised).map(drop)
 }
 
 /// Returns the `count` numbers that a function returns for f, t and h (s), and the state y.
@@ -171,8 +164,7 @@ pub fn add_tableau(
     b_hat: Option<Vec<f64>>,
 ) -> PyResult<u32> {
     let method = Method::from_tableau(name, &a, &b, b_hat.as_deref());
-    let method = method.map_err(|error| wrong(py, error.to_string()))?;
-    Ok(method.register().order)
+    Ok(register(py, method, Raised::default())?.order)
 }
 
 /// Registers a solver of another library. `solve` is called with f, the times (s), the state at
@@ -194,11 +186,7 @@ pub fn add_foreign(py: Python<'_>, name: &str, solve: &Bound<PyAny>) -> PyResult
         }
         solved.map(|()| states)
     });
-    register(
-        method.map_err(|error| wrong(py, error.to_string()))?,
-        raised,
-    );
-    Ok(())
+    register(py, method, raised).map(drop)
 }
 
 /// Makes a call of a function of Python that may evaluate f.
@@ -206,16 +194,22 @@ fn with(
     f: &mut CoreDerivative,
     call: impl FnOnce(Python<'_>) -> Result<(), String>,
 ) -> Result<(), Error> {
-    STEPPED
-        .set(f, || Python::attach(call))
-        .map_err(Error::Callback)
+    let called = STEPPED.set(f, || Python::attach(call));
+    called.map_err(Error::Callback)
 }
 
-/// Registers a method, with the place of its exceptions.
-fn register(method: Method, raised: Raised) {
-    let name = method.register().name;
+/// Registers a method that could be made, with the place of its exceptions.
+fn register(
+    py: Python<'_>,
+    method: Result<Method, Error>,
+    raised: Raised,
+) -> PyResult<&'static Method> {
+    let method = method
+        .map_err(|error| wrong(py, error.to_string()))?
+        .register();
     let mut all = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
-    all.insert(name.into(), raised);
+    all.insert(method.name.into(), raised);
+    Ok(method)
 }
 
 /// Exceptions of own methods, by their names.

@@ -87,10 +87,8 @@ pub fn add_forces(scene: &mut Scene, forces: &[Bound<PyAny>], raised: &Raised) -
     for force in forces {
         let function = Function::new(force, Shape::Rows, raised)?;
         let Model::Network(network) = &mut scene.model else {
-            let why = format!(
-                "the scene {} has no masses that forces could act on",
-                scene.name
-            );
+            let name = &scene.name;
+            let why = format!("the scene {name} has no masses that forces could act on");
             return Err(wrong(force.py(), why));
         };
         let own = OwnForce::new(move |t, x: &[f64], v: &[f64], f: &mut [f64]| {

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use a3_core::{Checkpoint, Error, Network, Passage, Simulation, SpringKind, StepLimits, Vector3};
+use a3_core::{Checkpoint, Error, Network, Passage, Simulation, StepLimits, Vector3};
 use a3_files::failure::Failure;
 use a3_files::output;
 use a3_media::painter::Painter;
-use a3_media::show::{Arrows, Manner, Quantity, Show, check_drawing, style};
+use a3_media::show::{Arrows, Manner, Quantity, Show, check_drawing, kind_name, style};
 use a3_scenes::Presentation;
 use a3_studio::caption;
 use numpy::{PyArray1, PyArray2};
@@ -15,7 +15,7 @@ use pyo3::types::PyBytes;
 
 use super::arrays::{indices, numbers, rows};
 use super::driving::{Driven, GoOn, advance, check_time, drive, take_steps};
-use super::errors::{of_error, of_failure, wrong};
+use super::errors::{of_error, told, wrong};
 use super::function::{Function, Raised, Shape};
 use super::own_method::raised_by;
 use super::scene::{Given, Opened, setting};
@@ -74,13 +74,19 @@ impl Run {
     }
 
     /// Changes the simulation by `change`, which may refuse.
-    fn change(
+    fn change<T>(
         &self,
         py: Python<'_>,
-        change: impl FnOnce(&mut Simulation) -> Result<(), Error>,
-    ) -> PyResult<()> {
+        change: impl FnOnce(&mut Simulation) -> Result<T, Error>,
+    ) -> PyResult<T> {
         let mut simulation = self.simulation(py)?;
         change(&mut simulation).map_err(|error| of_error(py, &error, error.to_string()))
+    }
+
+    /// Checks that the run can advance to a time (s).
+    fn check_time(&self, py: Python<'_>, time: f64) -> PyResult<()> {
+        let checked = check_time(&*self.simulation(py)?, time);
+        checked.map_err(|why| wrong(py, why))
     }
 }
 
@@ -115,7 +121,7 @@ impl Run {
             return Err(raised);
         }
         Ok(Self {
-            simulation: Turns::new(run.map_err(|failure| of_failure(py, &failure))?),
+            simulation: Turns::new(told(py, run)?),
             presentation: opened.setup.presentation.clone(),
             duration: opened.setup.defaults.duration,
             calls: opened.calls || method.is_own(),
@@ -134,8 +140,7 @@ impl Run {
     #[pyo3(signature = (time, progress=None))]
     fn advance(&self, py: Python<'_>, time: f64, progress: Option<&Bound<PyAny>>) -> PyResult<()> {
         let calls = self.calls;
-        let checked = check_time(&*self.simulation(py)?, time);
-        checked.map_err(|why| wrong(py, why))?;
+        self.check_time(py, time)?;
         self.work(py, progress, move |run, go_on| {
             advance(run, time, calls, go_on)
         })
@@ -151,8 +156,7 @@ impl Run {
         time: f64,
         direction: i64,
     ) -> PyResult<bool> {
-        let checked = check_time(&*self.simulation(py)?, time);
-        checked.map_err(|why| wrong(py, why))?;
+        self.check_time(py, time)?;
         let function = Function::new(function, Shape::Number, &self.raised)?;
         let passage = match direction.signum() {
             0 => Passage::Either,
@@ -203,12 +207,7 @@ impl Run {
 
     /// Pins a particle where it is, or releases it, and returns whether it is pinned then.
     fn toggle_pin(&self, py: Python<'_>, particle: usize) -> PyResult<bool> {
-        let mut is_pinned = false;
-        self.change(py, |run| {
-            is_pinned = run.toggle_pin(particle)?;
-            Ok(())
-        })?;
-        Ok(is_pinned)
+        self.change(py, |run| run.toggle_pin(particle))
     }
 
     /// Grabs a particle with the hand.
@@ -219,23 +218,17 @@ impl Run {
     /// Pulls the grabbed particle towards a point (m).
     fn pull(&self, py: Python<'_>, point: [f64; 3]) -> PyResult<()> {
         if point.iter().any(|x| !x.is_finite()) {
-            return Err(wrong(
-                py,
-                format!("a point is three finite numbers in metres, not {point:?}"),
-            ));
+            let why = format!("a point is three finite numbers in metres, not {point:?}");
+            return Err(wrong(py, why));
         }
-        self.change(py, |run| {
-            run.pull(Vector3::from(point));
-            Ok(())
-        })
+        self.simulation(py)?.pull(Vector3::from(point));
+        Ok(())
     }
 
     /// Lets go of the grabbed particle.
     fn release(&self, py: Python<'_>) -> PyResult<()> {
-        self.change(py, |run| {
-            run.release();
-            Ok(())
-        })
+        self.simulation(py)?.release();
+        Ok(())
     }
 
     /// Returns the name of the scene.
@@ -316,15 +309,11 @@ impl Run {
     #[getter]
     fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let simulation = self.simulation(py)?;
-        let velocities = simulation.velocities();
-        rows(
-            py,
-            if simulation.particles() > 0 {
-                &velocities
-            } else {
-                &[]
-            },
-        )
+        let mut velocities = simulation.velocities();
+        if simulation.particles() == 0 {
+            velocities.clear();
+        }
+        rows(py, &velocities)
     }
 
     /// Returns the contact forces (N), n x 3, if anything can touch.
@@ -353,11 +342,8 @@ impl Run {
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
         let corners = &self.presentation.surface.triangles;
-        let corners: Vec<_> = corners
-            .iter()
-            .map(|corners| corners.map(i64::from))
-            .collect();
-        indices(py, &corners)
+        let corners = corners.iter().map(|corners| corners.map(i64::from));
+        indices(py, &corners.collect::<Vec<_>>())
     }
 
     /// Returns the ends, kinds and numbers of all springs.
@@ -366,17 +352,12 @@ impl Run {
         let network = simulation.model().network();
         let springs: Vec<_> = network.into_iter().flat_map(Network::all_springs).collect();
         let ends: Vec<_> = springs.iter().map(|s| [s.i as i64, s.j as i64]).collect();
-        let kind = |kind| match kind {
-            SpringKind::Structural => "structural",
-            SpringKind::Shear => "shear",
-            SpringKind::Bend => "bend",
-        };
         let column = |number: fn(&a3_core::Spring) -> f64| {
             PyArray1::from_iter(py, springs.iter().map(number))
         };
         Ok((
             indices(py, &ends)?,
-            springs.iter().map(|s| kind(s.kind)).collect(),
+            springs.iter().map(|s| kind_name(s.kind)).collect(),
             column(|s| s.law.stiffness),
             column(|s| s.law.rest_length),
             column(|s| s.law.damping),
@@ -428,10 +409,8 @@ impl Run {
             let mut painter = Painter::new(&show, run, size, caption(&show, size))?;
             output::png(&painter.draw(&mut show, run)?, size)
         };
-        let png = py
-            .detach(draw)
-            .map_err(|failure| of_failure(py, &failure))?;
-        Ok(PyBytes::new(py, &png))
+        let png = py.detach(draw);
+        Ok(PyBytes::new(py, &told(py, png)?))
     }
 }
 
@@ -442,15 +421,11 @@ fn named<T: Copy>(
     all: &[T],
     name_of: impl Fn(T) -> &'static str,
 ) -> Result<Option<T>, Failure> {
-    let Some(name) = name else {
-        return Ok(None);
-    };
+    let Some(name) = name else { return Ok(None) };
     let found = all.iter().copied().find(|choice| name_of(*choice) == name);
     found.map(Some).ok_or_else(|| {
         let names: Vec<_> = all.iter().map(|choice| name_of(*choice)).collect();
-        Failure::usage(format!(
-            "{option} `{name}`: the choices are {}",
-            names.join(", ")
-        ))
+        let names = names.join(", ");
+        Failure::usage(format!("{option} `{name}`: the choices are {names}"))
     })
 }

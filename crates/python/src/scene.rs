@@ -10,7 +10,7 @@ use a3_lab::choose::command;
 use a3_scenes::{Defaults, Setup};
 use pyo3::prelude::*;
 
-use super::errors::{of_failure, wrong};
+use super::errors::{told, wrong};
 use super::function::Raised;
 use super::own_method::raised_by;
 use super::own_system::{self, add_forces};
@@ -21,16 +21,14 @@ use super::own_system::{self, add_forces};
 /// # Errors
 /// There is no such scene, or it has a fault.
 pub fn source(kind: &str, text: &str) -> Result<Source, Failure> {
-    Ok(match kind {
-        "named" => setup::find(text, "scene")?,
-        "toml" => Source::written(text)?,
-        "table" => Source::tabulated(text)?,
-        _ => {
-            return Err(Failure::usage(format!(
-                "there is no kind of scene `{kind}`"
-            )));
-        }
-    })
+    match kind {
+        "named" => Ok(setup::find(text, "scene")?),
+        "toml" => Ok(Source::written(text)?),
+        "table" => Ok(Source::tabulated(text)?),
+        _ => Err(Failure::usage(format!(
+            "there is no kind of scene `{kind}`"
+        ))),
+    }
 }
 
 /// Scene that was read, or that a program has built.
@@ -81,8 +79,7 @@ impl OpenScene {
     pub fn command(&self, method: &Method, control: Control) -> Option<String> {
         match &self.made {
             Made::Read(source) if source.is_named() && !method.is_own() => {
-                let request = self.request(source);
-                Some(command(&request, method, control))
+                Some(command(&self.request(source), method, control))
             }
             _ => None,
         }
@@ -175,14 +172,13 @@ impl Opened {
                 contact: given.self_collision,
             },
         };
-        let failed = |failure| of_failure(py, &failure);
         let raised = Raised::default();
         let made = match given.source.extract::<(String, String)>() {
-            Ok((kind, text)) => Made::Read(source(&kind, &text).map_err(failed)?),
+            Ok((kind, text)) => Made::Read(told(py, source(&kind, &text))?),
             Err(_) => Made::Built(Box::new(own_system::scene(&given.source, &raised)?)),
         };
         let scene = OpenScene { made, options };
-        let mut setup = py.detach(|| scene.build()).map_err(failed)?;
+        let mut setup = told(py, py.detach(|| scene.build()))?;
         add_forces(&mut setup.scene, &given.forces, &raised)?;
         Ok(Self {
             calls: scene.is_built() || !given.forces.is_empty(),
@@ -198,7 +194,7 @@ impl Opened {
         if let Some(raised) = self.raised.take() {
             return Err(raised);
         }
-        scene.map_err(|failure| of_failure(py, &failure))
+        told(py, scene)
     }
 
     /// Returns where the exceptions of the functions of this scene and of these methods are kept.

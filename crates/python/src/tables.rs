@@ -5,7 +5,7 @@ use a3_files::failure::Failure;
 use a3_scenes::{SCENES, Setup};
 use pyo3::prelude::*;
 
-use super::errors::{of_failure, wrong};
+use super::errors::{told, wrong};
 use super::scene::source;
 
 /// Returns the names of the built-in scenes.
@@ -38,7 +38,7 @@ pub fn methods() -> Vec<Row> {
 #[pyfunction]
 pub fn table(py: Python<'_>, kind: &str, text: &str) -> PyResult<String> {
     let table = source(kind, text).and_then(|source| source.table().map_err(Failure::Input));
-    table.map_err(|failure| of_failure(py, &failure))
+    told(py, table)
 }
 
 /// Finds a method by its name or its letter.

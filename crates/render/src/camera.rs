@@ -53,20 +53,16 @@ impl Camera {
         let target = Point3::from(target);
         let d = Point3::from(eye) - target;
         let distance = d.norm().max(1e-9);
+        let sine = (d.y / distance).clamp(-1.0, 1.0);
+        let power = 10.0f32.powf(distance.log10().floor());
+        let in_metres = METRE_DISTANCES.contains(&distance);
         Self {
             target,
             yaw: d.x.atan2(d.z),
-            pitch: (d.y / distance)
-                .clamp(-1.0, 1.0)
-                .asin()
-                .clamp(-MAX_PITCH, MAX_PITCH),
+            pitch: sine.asin().clamp(-MAX_PITCH, MAX_PITCH),
             distance,
             parallel: false,
-            unit: if METRE_DISTANCES.contains(&distance) {
-                1.0
-            } else {
-                10.0f32.powf(distance.log10().floor())
-            },
+            unit: if in_metres { 1.0 } else { power },
             focus: [0.0, 0.0, 1.0, 1.0],
         }
     }
@@ -84,10 +80,8 @@ impl Camera {
     /// # Panics
     /// Panics if the width or the height is not above 0.
     pub fn set_focus(&mut self, focus: [f32; 4]) {
-        assert!(
-            focus[2] > 0.0 && focus[3] > 0.0,
-            "an empty focus: {focus:?}"
-        );
+        let is_open = focus[2] > 0.0 && focus[3] > 0.0;
+        assert!(is_open, "an empty focus: {focus:?}");
         self.focus = focus;
     }
 
@@ -102,11 +96,8 @@ impl Camera {
 
     /// Moves the target, unless the new one is too far away.
     fn aim(&mut self, target: Point3<f32>) {
-        if target
-            .coords
-            .iter()
-            .all(|c| c.abs() < MAX_TARGET_DISTANCE * self.unit.max(1.0))
-        {
+        let farthest = MAX_TARGET_DISTANCE * self.unit.max(1.0);
+        if target.coords.iter().all(|c| c.abs() < farthest) {
             self.target = target;
         }
     }
@@ -279,11 +270,7 @@ impl Camera {
     /// along the view (m): the inverse of [`project`](Self::project).
     #[must_use]
     pub fn unproject(&self, at: [f32; 2], distance: f32, aspect: f32) -> [f32; 3] {
-        let depth = if self.parallel {
-            self.distance
-        } else {
-            distance
-        };
+        let depth = [distance, self.distance][usize::from(self.parallel)];
         let [left, top, width, height] = self.focus;
         let at = [(at[0] - left) / width, (at[1] - top) / height];
         let aspect = aspect * width / height;
@@ -302,17 +289,13 @@ mod tests {
     fn zooming_leaves_what_is_under_the_pointer() {
         for (at, aspect) in [([0.5, 0.5], 1.7), ([0.2, 0.9], 1.7), ([0.8, 0.1], 0.5)] {
             let mut camera = Camera::look_at([3.0, 2.0, 5.0], [0.1, 1.0, -0.2]);
-            let (distance, stays) = (
-                camera.distance,
-                camera.unproject(at, camera.distance, aspect),
-            );
+            let distance = camera.distance;
+            let stays = camera.unproject(at, distance, aspect);
             camera.zoom_at(0.7, at, aspect);
             assert!((camera.distance / distance - 0.7).abs() < 1e-6);
             let (found, _) = camera.project(stays, aspect).unwrap();
-            assert!(
-                (found[0] - at[0]).hypot(found[1] - at[1]) < 1e-5,
-                "{found:?}"
-            );
+            let off = (found[0] - at[0]).hypot(found[1] - at[1]);
+            assert!(off < 1e-5, "{found:?}");
             camera.zoom_at(f32::NAN, at, aspect);
             assert!(camera.eye().coords.iter().all(|c| c.is_finite()));
         }
@@ -400,10 +383,8 @@ mod tests {
             camera.pan(random(), random());
             camera.zoom(1.0 + 0.3 * random());
             if k % 16 == 0 {
-                assert!(
-                    camera.view_projection(1.6).iter().all(|m| m.is_finite()),
-                    "{camera:?}"
-                );
+                let matrix = camera.view_projection(1.6);
+                assert!(matrix.iter().all(|m| m.is_finite()), "{camera:?}");
             }
         }
     }

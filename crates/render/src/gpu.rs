@@ -37,15 +37,11 @@ impl fmt::Display for GpuError {
                  on Debian and Ubuntu, `dnf install mesa-vulkan-drivers` on Fedora"
             ),
             Self::Device(why) => write!(f, "the graphics adapter cannot be opened: {why}"),
-            Self::Size {
-                asked: (w, h),
-                limit,
-            } => {
-                write!(
-                    f,
-                    "a picture of {w}x{h} pixels is not possible here: each side must have 1 to {limit} pixels"
-                )
-            }
+            Self::Size { asked, limit } => write!(
+                f,
+                "a picture of {}x{} pixels is not possible here: each side must have 1 to {limit} pixels",
+                asked.0, asked.1
+            ),
             Self::Lost => f.write_str("the graphics device was lost"),
             Self::Refused(why) => write!(f, "the graphics device reported an error: {why}"),
         }
@@ -122,9 +118,8 @@ impl Gpu {
             Err(_) => instance
                 .request_adapter(&wgpu::RequestAdapterOptions {
                     power_preference: wgpu::PowerPreference::HighPerformance,
-                    force_fallback_adapter: false,
                     compatible_surface: surface,
-                    apply_limit_buckets: false,
+                    ..Default::default()
                 })
                 .await
                 .map_err(|_| GpuError::no_adapter())?,
@@ -139,11 +134,9 @@ impl Gpu {
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("a3"),
-                required_features: wgpu::Features::empty(),
                 required_limits: limits,
-                experimental_features: wgpu::ExperimentalFeatures::disabled(),
                 memory_hints: wgpu::MemoryHints::MemoryUsage,
-                trace: wgpu::Trace::Off,
+                ..Default::default()
             })
             .await
             .map_err(|e| GpuError::Device(one_line(&e.to_string())))?;
@@ -191,12 +184,8 @@ impl Gpu {
     /// else 1.
     #[must_use]
     pub fn samples(&self, color: wgpu::TextureFormat) -> u32 {
-        let four = |format| {
-            self.adapter
-                .get_texture_format_features(format)
-                .flags
-                .sample_count_supported(4)
-        };
+        let flags = |format| self.adapter.get_texture_format_features(format).flags;
+        let four = |format| flags(format).sample_count_supported(4);
         if four(color) && four(DEPTH) { 4 } else { 1 }
     }
 
@@ -217,6 +206,34 @@ impl Gpu {
     }
 }
 
+/// Returns the description of a texture of a size (px), with one sample a pixel.
+pub(crate) fn flat(
+    label: &str,
+    (width, height): (u32, u32),
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::TextureDescriptor<'_> {
+    wgpu::TextureDescriptor {
+        label: Some(label),
+        size: extent(width, height),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    }
+}
+
+/// Returns the extent of a part of a texture (px).
+pub(crate) fn extent(width: u32, height: u32) -> wgpu::Extent3d {
+    wgpu::Extent3d {
+        width,
+        height,
+        depth_or_array_layers: 1,
+    }
+}
+
 /// The first adapter whose name contains `name`, in upper or lower case.
 async fn named_adapter(
     instance: &wgpu::Instance,
@@ -225,22 +242,13 @@ async fn named_adapter(
 ) -> Result<wgpu::Adapter, GpuError> {
     let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
     adapters.retain(|adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface)));
-    let names: Vec<_> = adapters
-        .iter()
-        .map(|adapter| adapter.get_info().name)
-        .collect();
-    let fits = |adapter: &wgpu::Adapter| {
-        adapter
-            .get_info()
-            .name
-            .to_lowercase()
-            .contains(&name.to_lowercase())
-    };
-    adapters.into_iter().find(fits).ok_or_else(|| {
-        GpuError::NoAdapter(format!(
-            "WGPU_ADAPTER_NAME is {name}, but the adapters are {names:?}"
-        ))
-    })
+    let names: Vec<_> = adapters.iter().map(|it| it.get_info().name).collect();
+    let wanted = name.to_lowercase();
+    let fits = |name: &String| name.to_lowercase().contains(&wanted);
+    let found = names.iter().position(fits);
+    let why = format!("WGPU_ADAPTER_NAME is {name}, but the adapters are {names:?}");
+    let found = found.ok_or(GpuError::NoAdapter(why));
+    found.map(|k| adapters.swap_remove(k))
 }
 
 /// Replaces all white space of a text by single spaces.

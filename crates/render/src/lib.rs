@@ -8,29 +8,20 @@
 mod buffers;
 mod camera;
 mod gpu;
-mod list;
-mod mesh;
-mod offscreen;
 mod picture;
 mod pipelines;
-mod ramp;
 mod renderer;
-mod shapes;
 mod targets;
-mod transfer;
-mod view;
 
 pub use camera::Camera;
 pub use gpu::{Gpu, GpuError};
-pub use offscreen::{OFFSCREEN_FORMAT, Offscreen, TEXT_FORMAT};
 pub use picture::{
     Ball, Corner, Floor, LOOKS, Line, Liquid, Picture, STEEL_LOOK, Solid, Spring, Style, Tile,
     Topology,
 };
-pub use ramp::{ramp, shaded_by};
+pub use pipelines::{ramp, shaded_by};
 pub use renderer::Renderer;
-pub use targets::Targets;
-pub use transfer::{Part, Transfer};
+pub use targets::{OFFSCREEN_FORMAT, Offscreen, Part, TEXT_FORMAT, Targets, Transfer};
 
 /// The example of the README, compiled as a test of documentation.
 #[cfg(doctest)]

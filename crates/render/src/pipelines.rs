@@ -1,5 +1,5 @@
 //! Render pipelines: the shader and the vertex data of each kind of object, and how it is combined
-//! with the picture so far.
+//! with the picture so far; and the colours of values.
 
 use wgpu::{
     CompareFunction, PrimitiveTopology, ShaderStages, StencilOperation, TextureSampleType,
@@ -22,24 +22,14 @@ pub(crate) struct Pipelines {
     pub(crate) floor: wgpu::RenderPipeline,
     /// The floor, seen from below.
     pub(crate) floor_below: wgpu::RenderPipeline,
-    pub(crate) wire_shadow: wgpu::RenderPipeline,
-    pub(crate) spring_shadow: wgpu::RenderPipeline,
-    pub(crate) line_shadow: wgpu::RenderPipeline,
-    pub(crate) mesh_shadow: wgpu::RenderPipeline,
-    pub(crate) ball_shadow: wgpu::RenderPipeline,
-    pub(crate) solid_shadow: wgpu::RenderPipeline,
-    pub(crate) liquid_shadow: wgpu::RenderPipeline,
-    pub(crate) mesh_contact: wgpu::RenderPipeline,
-    pub(crate) ball_contact: wgpu::RenderPipeline,
-    pub(crate) solid_contact: wgpu::RenderPipeline,
-    pub(crate) liquid_contact: wgpu::RenderPipeline,
-    pub(crate) mesh: wgpu::RenderPipeline,
-    pub(crate) ball: wgpu::RenderPipeline,
-    pub(crate) solid: wgpu::RenderPipeline,
-    pub(crate) liquid: wgpu::RenderPipeline,
-    pub(crate) wire: wgpu::RenderPipeline,
-    pub(crate) spring: wgpu::RenderPipeline,
-    pub(crate) line: wgpu::RenderPipeline,
+    /// Meshes, liquids, balls and solids.
+    pub(crate) surfaces: [wgpu::RenderPipeline; 4],
+    /// Their shadows, and those where they touch the floor.
+    pub(crate) shadows: [wgpu::RenderPipeline; 4],
+    pub(crate) contacts: [wgpu::RenderPipeline; 4],
+    /// Wires, springs and lines, and their shadows.
+    pub(crate) lines: [wgpu::RenderPipeline; 3],
+    pub(crate) line_shadows: [wgpu::RenderPipeline; 3],
 }
 
 /// Creates the layout of the bind group of all pipelines: the globals, and the particles with their
@@ -89,32 +79,24 @@ enum Layer {
     Over,
 }
 
-/// Data that all pipelines share.
-struct Maker<'a> {
-    device: &'a wgpu::Device,
-    shader: wgpu::ShaderModule,
-    layout: wgpu::PipelineLayout,
-    color: wgpu::TextureFormat,
-    samples: u32,
-}
-
-impl Maker<'_> {
-    /// Creates a pipeline of a vertex and a fragment shader, given by the first parts of their
-    /// names.
-    fn pipeline(
-        &self,
-        [vertex, fragment]: [&str; 2],
-        topology: PrimitiveTopology,
-        layer: Layer,
-        buffers: &[wgpu::VertexBufferLayout],
-    ) -> wgpu::RenderPipeline {
-        let buffers: Vec<_> = buffers.iter().cloned().map(Some).collect();
-        self.device
-            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+impl Pipelines {
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        source: &str,
+        layout: &wgpu::BindGroupLayout,
+        color: wgpu::TextureFormat,
+        samples: u32,
+    ) -> Self {
+        let (shader, layout) = shaders(device, source, layout);
+        // Shaders are given by the first parts of their names.
+        let pipeline = |vertex: &str, fragment: &str, topology, layer, buffers: &[_]| {
+            let buffers: Vec<Option<wgpu::VertexBufferLayout>> =
+                buffers.iter().cloned().map(Some).collect();
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(vertex),
-                layout: Some(&self.layout),
+                layout: Some(&layout),
                 vertex: wgpu::VertexState {
-                    module: &self.shader,
+                    module: &shader,
                     entry_point: Some(&format!("{vertex}_vertex")),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
                     buffers: &buffers,
@@ -125,15 +107,15 @@ impl Maker<'_> {
                 },
                 depth_stencil: Some(depth_stencil(layer)),
                 multisample: wgpu::MultisampleState {
-                    count: self.samples,
+                    count: samples,
                     ..Default::default()
                 },
                 fragment: Some(wgpu::FragmentState {
-                    module: &self.shader,
+                    module: &shader,
                     entry_point: Some(&format!("{fragment}_fragment")),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
                     targets: &[Some(wgpu::ColorTargetState {
-                        format: self.color,
+                        format: color,
                         blend: blend(layer),
                         write_mask: wgpu::ColorWrites::ALL,
                     })],
@@ -141,37 +123,7 @@ impl Maker<'_> {
                 multiview_mask: None,
                 cache: None,
             })
-    }
-}
-
-impl Pipelines {
-    pub(crate) fn new(
-        device: &wgpu::Device,
-        source: &str,
-        layout: &wgpu::BindGroupLayout,
-        color: wgpu::TextureFormat,
-        samples: u32,
-    ) -> Self {
-        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("scene"),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        });
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("scene"),
-            bind_group_layouts: &[Some(layout)],
-            immediate_size: 0,
-        });
-        let maker = Maker {
-            device,
-            shader,
-            layout,
-            color,
-            samples,
         };
-        let pipeline =
-            |name: &str, fragment: &str, topology, layer, buffers: &[wgpu::VertexBufferLayout]| {
-                maker.pipeline([name, fragment], topology, layer, buffers)
-            };
         let unit = wgpu::vertex_attr_array![0 => Float32x3];
         let ball = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4];
         let corner = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
@@ -193,51 +145,68 @@ impl Pipelines {
             stream(VertexStepMode::Instance, &solid, size_of::<Solid>()),
         ];
         let liquid = [stream(VertexStepMode::Vertex, &drop, size_of::<Corner>())];
-        let wires = [stream(
-            VertexStepMode::Instance,
-            &ends,
-            size_of::<[u32; 2]>(),
-        )];
-        let springs = [stream(
-            VertexStepMode::Instance,
-            &spring,
-            size_of::<Spring>(),
-        )];
-        let lines = [stream(VertexStepMode::Instance, &line, size_of::<Line>())];
-        let (list, strip) = (
-            PrimitiveTopology::TriangleList,
-            PrimitiveTopology::TriangleStrip,
-        );
+        let instances = |attributes, size| [stream(VertexStepMode::Instance, attributes, size)];
+        let wires = instances(&ends[..], size_of::<[u32; 2]>());
+        let springs = instances(&spring[..], size_of::<Spring>());
+        let lines = instances(&line[..], size_of::<Line>());
+        let surfaces = [
+            ("mesh", "mesh", &[][..]),
+            ("liquid", "liquid", &liquid[..]),
+            ("ball", "ball", &balls[..]),
+            ("solid", "ball", &solids[..]),
+        ];
+        let lines = [
+            ("wire", &wires[..]),
+            ("spring", &springs[..]),
+            ("line", &lines[..]),
+        ];
+        let list = PrimitiveTopology::TriangleList;
+        let strip = PrimitiveTopology::TriangleStrip;
+        let cast = |what: &str| {
+            surfaces.map(|(kind, _, buffers)| {
+                pipeline(
+                    &format!("{kind}_{what}"),
+                    "shadow",
+                    list,
+                    Layer::Shadow,
+                    buffers,
+                )
+            })
+        };
         Self {
             background: pipeline("background", "background", list, Layer::Back, &[]),
             floor: pipeline("floor", "floor", strip, Layer::Floor, &[]),
             floor_below: pipeline("floor", "floor_below", strip, Layer::Over, &[]),
-            mesh_shadow: pipeline("mesh_shadow", "shadow", list, Layer::Shadow, &[]),
-            ball_shadow: pipeline("ball_shadow", "shadow", list, Layer::Shadow, &balls),
-            solid_shadow: pipeline("solid_shadow", "shadow", list, Layer::Shadow, &solids),
-            liquid_shadow: pipeline("liquid_shadow", "shadow", list, Layer::Shadow, &liquid),
-            mesh_contact: pipeline("mesh_contact", "shadow", list, Layer::Shadow, &[]),
-            ball_contact: pipeline("ball_contact", "shadow", list, Layer::Shadow, &balls),
-            solid_contact: pipeline("solid_contact", "shadow", list, Layer::Shadow, &solids),
-            liquid_contact: pipeline("liquid_contact", "shadow", list, Layer::Shadow, &liquid),
-            wire_shadow: pipeline("wire_shadow", "line_shadow", strip, Layer::Shadow, &wires),
-            spring_shadow: pipeline(
-                "spring_shadow",
-                "line_shadow",
-                strip,
-                Layer::Shadow,
-                &springs,
-            ),
-            line_shadow: pipeline("line_shadow", "line_shadow", strip, Layer::Shadow, &lines),
-            mesh: pipeline("mesh", "mesh", list, Layer::Solid, &[]),
-            ball: pipeline("ball", "ball", list, Layer::Solid, &balls),
-            solid: pipeline("solid", "ball", list, Layer::Solid, &solids),
-            liquid: pipeline("liquid", "liquid", list, Layer::Solid, &liquid),
-            wire: pipeline("wire", "line", strip, Layer::Over, &wires),
-            spring: pipeline("spring", "line", strip, Layer::Over, &springs),
-            line: pipeline("line", "line", strip, Layer::Over, &lines),
+            surfaces: surfaces.map(|(kind, fragment, buffers)| {
+                pipeline(kind, fragment, list, Layer::Solid, buffers)
+            }),
+            shadows: cast("shadow"),
+            contacts: cast("contact"),
+            lines: lines.map(|(kind, ends)| pipeline(kind, "line", strip, Layer::Over, ends)),
+            line_shadows: lines.map(|(kind, ends)| {
+                let shadow = format!("{kind}_shadow");
+                pipeline(&shadow, "line_shadow", strip, Layer::Shadow, ends)
+            }),
         }
     }
+}
+
+/// Creates the module of the shaders, and the layout of all pipelines.
+fn shaders(
+    device: &wgpu::Device,
+    source: &str,
+    layout: &wgpu::BindGroupLayout,
+) -> (wgpu::ShaderModule, wgpu::PipelineLayout) {
+    let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("scene"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("scene"),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    (shader, layout)
 }
 
 /// Returns the layout of a buffer of vertices or instances of that length (bytes).
@@ -286,10 +255,9 @@ fn depth_stencil(layer: Layer) -> wgpu::DepthStencilState {
     wgpu::DepthStencilState {
         format: DEPTH,
         depth_write_enabled: Some(matches!(layer, Layer::Floor | Layer::Solid)),
-        depth_compare: Some(if layer == Layer::Shadow {
-            CompareFunction::Always
-        } else {
-            CompareFunction::LessEqual
+        depth_compare: Some(match layer {
+            Layer::Shadow => CompareFunction::Always,
+            _ => CompareFunction::LessEqual,
         }),
         stencil: wgpu::StencilState {
             front: face,
@@ -298,5 +266,70 @@ fn depth_stencil(layer: Layer) -> wgpu::DepthStencilState {
             write_mask: 0xff,
         },
         bias: wgpu::DepthBiasState::default(),
+    }
+}
+
+/// Colours at equal distances, as linear red, green and blue. The shader has the same list.
+const RAMP: [[f32; 3]; 8] = [
+    [0.058, 0.0, 0.089],
+    [0.061, 0.032, 0.209],
+    [0.037, 0.107, 0.266],
+    [0.02, 0.212, 0.27],
+    [0.014, 0.356, 0.242],
+    [0.068, 0.533, 0.153],
+    [0.352, 0.701, 0.041],
+    [0.982, 0.799, 0.019],
+];
+
+/// Returns the colour of a value from 0 to 1, as linear red, green and blue, then 1. Values beyond
+/// the ends have the colours of the ends.
+///
+/// ```
+/// let [low, high] = [0.0, 1.0].map(a3_render::ramp);
+/// assert!(low != high && low[3] == 1.0);
+/// ```
+#[must_use]
+pub fn ramp(value: f32) -> [f32; 4] {
+    let last = RAMP.len() - 1;
+    let at = value.clamp(0.0, 1.0) * last as f32;
+    let below = (at as usize).min(last - 1);
+    let share = at - below as f32;
+    let [from, to] = [RAMP[below], RAMP[below + 1]];
+    let mixed = |k: usize| from[k] + share * (to[k] - from[k]);
+    [mixed(0), mixed(1), mixed(2), 1.0]
+}
+
+/// Returns the fourth number of a point whose surface is coloured by a value from 0 to 1, instead
+/// of the number of a look.
+#[must_use]
+pub fn shaded_by(value: f32) -> f32 {
+    -1.0 - value.clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shader_has_the_same_colours() {
+        let stops = RAMP.map(|[r, g, b]| format!("vec3({r:?}, {g:?}, {b:?})"));
+        let mut rest = SOURCE;
+        for stop in &stops {
+            let (_, after) = rest.split_once(stop).unwrap_or_else(|| panic!("{stop}"));
+            rest = after;
+        }
+    }
+
+    #[test]
+    fn values_have_colours_between_the_stops_ever_brighter() {
+        assert_eq!(ramp(0.0)[..3], RAMP[0]);
+        assert_eq!(ramp(7.0)[..3], RAMP[RAMP.len() - 1]);
+        assert_eq!(ramp(-1.0), ramp(0.0));
+        let bright = |k: i32| {
+            let [r, g, b, _] = ramp(k as f32 / 100.0);
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        };
+        assert!((0..100).all(|k| bright(k) < bright(k + 1)));
+        assert_eq!([shaded_by(0.25), shaded_by(9.0)], [-1.25, -2.0]);
     }
 }

@@ -2,17 +2,11 @@
 
 mod common;
 
-use a3_render::{
-    Ball, Camera, Floor, Gpu, OFFSCREEN_FORMAT, Offscreen, Picture, Renderer, Topology,
-};
-use common::gpu;
+use a3_render::{Ball, Camera, Floor, Gpu, Picture, Topology};
+use common::{FLOOR, gpu};
 use image::RgbaImage;
 
 const SIZE: (u32, u32) = (240, 160);
-const FLOOR: Floor = Floor {
-    height: 0.0,
-    solid: true,
-};
 
 /// Draws triangles in red, and balls, above a floor or without one.
 fn draw(
@@ -22,26 +16,31 @@ fn draw(
     balls: &[Ball],
     floor: Option<Floor>,
 ) -> RgbaImage {
-    let samples = gpu.samples(OFFSCREEN_FORMAT);
-    let mut renderer = Renderer::new(gpu, OFFSCREEN_FORMAT, samples, topology);
     let picture = Picture {
         points,
         balls,
         floor,
-        ..Picture::new(Camera::look_at([0.5, 1.6, 4.0], [0.0, 0.3, 0.0]))
+        ..Picture::new(camera())
     };
-    let offscreen = Offscreen::new(gpu, SIZE).unwrap();
-    let pixels = offscreen.render(gpu, &mut renderer, &picture).unwrap();
-    RgbaImage::from_raw(SIZE.0, SIZE.1, pixels).unwrap()
+    common::draw(gpu, SIZE, topology, picture)
+}
+
+fn camera() -> Camera {
+    Camera::look_at([0.5, 1.6, 4.0], [0.0, 0.3, 0.0])
+}
+
+/// Returns the pixel where a point of the world (m) is seen.
+fn pixel(picture: &RgbaImage, point: [f32; 3]) -> [u8; 4] {
+    let (width, height) = (SIZE.0 as f32, SIZE.1 as f32);
+    let ([x, y], _) = camera().project(point, width / height).unwrap();
+    picture.get_pixel((x * width) as u32, (y * height) as u32).0
 }
 
 /// Horizontal squares of these heights and half sides (m).
 fn squares(squares: &[(f32, f32)]) -> (Topology, Vec<[f32; 4]>) {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-    let points: Vec<_> = squares
-        .iter()
-        .flat_map(|(y, half)| corners.map(|[x, z]| [half * x, *y, half * z, 0.0]))
-        .collect();
+    let square = |(y, half): &(f32, f32)| corners.map(|[x, z]| [half * x, *y, half * z, 0.0]);
+    let points: Vec<_> = squares.iter().flat_map(square).collect();
     let triangles = (0..squares.len() as u32)
         .flat_map(|k| [[0, 2, 1], [0, 3, 2]].map(|t| t.map(|i| 4 * k + i)))
         .collect();
@@ -94,14 +93,9 @@ fn a_ball_on_the_floor_has_a_shadow_around_it() {
         color: [0.3, 0.36, 0.44, 1.0],
     };
     // Just left of the ball, which is the side of the lamp.
-    let camera = Camera::look_at([0.5, 1.6, 4.0], [0.0, 0.3, 0.0]);
-    let (place, _) = camera
-        .project([-0.2, 0.0, 0.1], SIZE.0 as f32 / SIZE.1 as f32)
-        .unwrap();
     let beside = |height| {
         let picture = draw(&gpu, &empty, &[], &[ball(height)], Some(FLOOR));
-        let [x, y] = [place[0] * SIZE.0 as f32, place[1] * SIZE.1 as f32];
-        i32::from(picture.get_pixel(x as u32, y as u32).0[1])
+        i32::from(pixel(&picture, [-0.2, 0.0, 0.1])[1])
     };
     let (touching, above) = (beside(0.0), beside(0.5));
     assert!(touching < above - 8, "{touching} {above}");
@@ -125,14 +119,10 @@ fn the_ground_hides_nothing() {
 #[test]
 fn edges_are_sharp_where_points_are_split() {
     let Some(gpu) = gpu() else { return };
-    let points = [
-        [0.5, 0.0, -1.0, 0.0],
-        [0.5, 0.0, 1.0, 0.0],
-        [0.0, 0.7, -1.0, 0.0],
-        [0.0, 0.7, 1.0, 0.0],
-        [-0.5, 0.0, -1.0, 0.0],
-        [-0.5, 0.0, 1.0, 0.0],
-    ];
+    let ridge = [[0.5, 0.0], [0.0, 0.7], [-0.5, 0.0]];
+    let points = ridge
+        .map(|[x, y]| [[x, y, -1.0, 0.0], [x, y, 1.0, 0.0]])
+        .concat();
     let smooth = vec![[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]];
     let sharp = vec![[0, 1, 6], [6, 1, 7], [8, 9, 4], [4, 9, 5]];
     let spread = |triangles: Vec<[u32; 3]>, splits: Vec<u32>| {
@@ -143,15 +133,8 @@ fn edges_are_sharp_where_points_are_split() {
             ..Topology::default()
         };
         let picture = draw(&gpu, &topology, &points, &[], None);
-        let camera = Camera::look_at([0.5, 1.6, 4.0], [0.0, 0.3, 0.0]);
-        let bright = [0.1, 0.9].map(|share| {
-            let place = [0.5 * (1.0 - share), 0.7 * share, 0.0];
-            let (at, _) = camera
-                .project(place, SIZE.0 as f32 / SIZE.1 as f32)
-                .unwrap();
-            let [x, y] = [at[0] * SIZE.0 as f32, at[1] * SIZE.1 as f32];
-            i32::from(picture.get_pixel(x as u32, y as u32).0[0])
-        });
+        let bright = [0.1, 0.9]
+            .map(|share| i32::from(pixel(&picture, [0.5 * (1.0 - share), 0.7 * share, 0.0])[0]));
         (bright[0] - bright[1]).abs()
     };
     let (split, whole) = (spread(sharp, vec![2, 3, 2, 3]), spread(smooth, vec![]));

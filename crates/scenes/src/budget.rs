@@ -68,8 +68,7 @@ impl Budget {
         };
         if !is_free(bytes) {
             let takes = bytes >> 20;
-            let why = format!("not enough memory for {count} {name}, which take {takes} MiB");
-            return Err(Fault::new(key, why));
+            refuse!(key: "not enough memory for {count} {name}, which take {takes} MiB");
         }
         self.left = left;
         Ok(())
@@ -110,8 +109,6 @@ pub(crate) fn check_text(text: &[u8]) -> Result<(), String> {
              other signs"
         ));
     }
-    if !is_free(tokens * TOKEN_MEMORY) {
-        return Err(format!("not enough memory to read {} bytes", text.len()));
-    }
+    refuse!(if !is_free(tokens * TOKEN_MEMORY) => "not enough memory to read {} bytes", text.len());
     Ok(())
 }

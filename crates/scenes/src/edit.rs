@@ -1,15 +1,14 @@
-//! Edits of a scene: bodies, particles, springs, rods and ropes that come or go.
+//! Edits of a scene: bodies, particles, springs, rods and ropes that come or go, and the numbers of
+//! the others since then.
 
 use a3_core::Network;
 use a3_core::elements::Fluid as Liquid;
 use a3_core::rigid::Body;
 
 use crate::description::{
-    ConstraintSpec, Description, Fluid, Particles, RigidBody, SpringSpec, Triple,
+    ConstraintSpec, Description, Fluid, Particles, Pin, RigidBody, SpringSpec, Triple,
 };
-use crate::renumber;
 use crate::snapshot::rows;
-use crate::splice::{Splice, keep};
 
 /// Edit of a scene. Particles have the numbers that they have before the edit.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,11 +77,8 @@ impl Edit {
             }
             Self::AddSpring(spring) => {
                 check_ends(network, [spring.0, spring.1])?;
-                if network.is_torn(spring.0, spring.1) {
-                    let why =
-                        "Springs between these particles are torn, and a new one would be too.";
-                    return Err(why.into());
-                }
+                refuse!(if network.is_torn(spring.0, spring.1) =>
+                    "Springs between these particles are torn, and a new one would be too.");
                 edited.description.springs.push(*spring);
             }
             Self::AddConstraint(link) => {
@@ -108,13 +104,10 @@ impl Edit {
 
 /// Checks that two particles can be joined.
 fn check_ends(network: &Network, [i, j]: [usize; 2]) -> Result<(), String> {
-    if i == j {
-        return Err("Two particles are needed to join.".into());
-    }
+    refuse!(if i == j => "Two particles are needed to join.");
     let fluid = network.fluid();
-    if fluid.is_some_and(|fluid| fluid.members().contains(i) || fluid.members().contains(j)) {
-        return Err("Particles of a fluid cannot be joined.".into());
-    }
+    let has = |i| fluid.is_some_and(|fluid| fluid.members().contains(i));
+    refuse!(if has(i) || has(j) => "Particles of a fluid cannot be joined.");
     Ok(())
 }
 
@@ -139,10 +132,8 @@ fn end_of_single(network: &Network) -> usize {
 /// Returns the number after that of the last particle of the rigid bodies: fluids follow.
 fn end_of_bodies(network: &Network) -> usize {
     let end = |body: &Body| body.center() + 1 + body.points().len();
-    network
-        .bodies()
-        .last()
-        .map_or_else(|| first_of_fluid(network), end)
+    let last = network.bodies().last();
+    last.map_or_else(|| first_of_fluid(network), end)
 }
 
 impl Edited {
@@ -209,11 +200,7 @@ impl Edited {
         }
         let springs = network.all_springs();
         let there = springs.filter(|it| joins(it.i, it.j)).count();
-        if there == 0 {
-            return Err(format!(
-                "Nothing that could be removed joins the particles {i} and {j}."
-            ));
-        }
+        refuse!(if there == 0 => "Nothing that could be removed joins the particles {i} and {j}.");
         let listed = self.remove_listed(network, joins);
         if listed < there {
             self.description.torn.push([i.min(j), i.max(j)]);
@@ -251,13 +238,8 @@ impl Edited {
         }
         let springs = network.springs_of(i);
         let mut pairs: Vec<_> = springs.map(|it| [it.i.min(it.j), it.i.max(it.j)]).collect();
-        if pairs.is_empty() {
-            return Err(format!("Particle {i} cannot be removed from its body."));
-        }
-        if network.is_held(i) {
-            let why = format!("Rods or ropes hold particle {i}: remove these first.");
-            return Err(why);
-        }
+        refuse!(if pairs.is_empty() => "Particle {i} cannot be removed from its body.");
+        refuse!(if network.is_held(i) => "Rods or ropes hold particle {i}: remove these first.");
         // Springs that were added by hand go; those of a body are torn.
         for it in &self.description.springs {
             let ends = [it.0.min(it.1), it.0.max(it.1)];
@@ -275,7 +257,7 @@ impl Edited {
     /// Adds rows of particles to the state, and numbers all others anew.
     fn insert(&mut self, at: usize, (positions, velocities): (Vec<Triple>, Vec<Triple>)) {
         self.particles = Splice::new(at, 0, positions.len());
-        renumber::particles(&mut self.description, self.particles);
+        renumber_particles(&mut self.description, self.particles);
         if let Some(state) = &mut self.description.state {
             let moves = velocities.iter().any(|v| *v != [0.0; 3]);
             if state.velocities.is_empty() && moves {
@@ -290,7 +272,7 @@ impl Edited {
     /// anew.
     fn remove(&mut self, at: usize, removed: usize) {
         self.particles = Splice::new(at, removed, 0);
-        renumber::particles(&mut self.description, self.particles);
+        renumber_particles(&mut self.description, self.particles);
         if let Some(state) = &mut self.description.state {
             for rows in [&mut state.positions, &mut state.velocities] {
                 self.particles.of(rows, []);
@@ -301,7 +283,7 @@ impl Edited {
     /// Removes body k from joints, pins and the state, and numbers the others anew.
     fn forget_body(&mut self, k: usize) {
         self.bodies = Splice::new(k, 1, 0);
-        renumber::bodies(&mut self.description, self.bodies);
+        renumber_bodies(&mut self.description, self.bodies);
         if let Some(state) = &mut self.description.state {
             self.bodies.of(&mut state.orientations, []);
             self.bodies.of(&mut state.angular_momenta, []);
@@ -319,9 +301,119 @@ impl Particles {
         keep(&mut self.springs, |it| {
             Some((one.number(it.0)?, one.number(it.1)?, it.2, it.3, it.4))
         });
-        for pin in &mut self.pin {
-            keep(&mut pin.particles, |k| one.number(*k));
-        }
-        self.pin.retain(|pin| !pin.particles.is_empty());
+        keep_pins(&mut self.pin, one);
     }
+}
+
+/// Numbers the particles of pins anew, and forgets the pins of removed ones.
+fn keep_pins(pins: &mut Vec<Pin>, particles: Splice) {
+    for pin in pins.iter_mut() {
+        keep(&mut pin.particles, |i| particles.number(*i));
+    }
+    pins.retain(|pin| !pin.particles.is_empty());
+}
+
+/// Numbers all particles anew that the scene names, and forgets what names a removed one.
+fn renumber_particles(description: &mut Description, particles: Splice) {
+    let number = |i: usize| particles.number(i);
+    let pair = |[i, j]: [usize; 2]| Some([number(i)?, number(j)?]);
+    keep(&mut description.springs, |it| {
+        let [i, j] = pair([it.0, it.1])?;
+        Some((i, j, it.2, it.3, it.4))
+    });
+    keep(&mut description.torn, |it| pair(*it));
+    keep(&mut description.constraint, |it| {
+        let mut it = it.clone();
+        for ends in [&mut it.rod, &mut it.rope].into_iter().flatten() {
+            *ends = pair(*ends)?;
+        }
+        if let Some(i) = &mut it.particle {
+            *i = number(*i)?;
+        }
+        Some(it)
+    });
+    keep_pins(&mut description.pin, particles);
+    description.trail = description.trail.and_then(number);
+}
+
+/// Numbers all rigid bodies anew that joints and pins name, and forgets the joints and the pins of
+/// a removed one.
+fn renumber_bodies(description: &mut Description, bodies: Splice) {
+    let number = |k: usize| bodies.number(k);
+    keep(&mut description.joint, |it| {
+        let mut it = it.clone();
+        if let Some(k) = &mut it.body {
+            *k = number(*k)?;
+        }
+        if let Some([k, l]) = &mut it.bodies {
+            (*k, *l) = (number(*k)?, number(*l)?);
+        }
+        Some(it)
+    });
+    let fit = |pins: &mut Vec<Pin>| {
+        pins.retain(|pin| pin.body.is_none_or(|k| number(k).is_some()));
+        for pin in pins {
+            pin.body = pin.body.and_then(number);
+        }
+    };
+    fit(&mut description.pin);
+    let pinned = description.bodies_mut().filter_map(|body| body.pin);
+    pinned.for_each(fit);
+}
+
+/// Places of a list from which an edit removed items, and to which it added others.
+///
+/// ```
+/// let gap = a3_scenes::Splice { at: 3, removed: 1, added: 0 };
+/// assert_eq!([2, 3, 4].map(|i| gap.number(i)), [Some(2), None, Some(3)]);
+/// assert_eq!(gap.back().number(3), Some(4));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Splice {
+    /// Number of the first of these items.
+    pub at: usize,
+    /// Number of items that were removed.
+    pub removed: usize,
+    /// Number of items that were added.
+    pub added: usize,
+}
+
+impl Splice {
+    /// Returns the number of item i since the edit; `None` if it was removed.
+    #[must_use]
+    pub fn number(&self, i: usize) -> Option<usize> {
+        match i.checked_sub(self.at) {
+            None => Some(i),
+            Some(after) if after < self.removed => None,
+            Some(after) => Some(self.at + after - self.removed + self.added),
+        }
+    }
+
+    /// Returns the splice that undoes this one.
+    #[must_use]
+    pub fn back(self) -> Self {
+        Self {
+            removed: self.added,
+            added: self.removed,
+            ..self
+        }
+    }
+
+    /// Creates the places from which items were removed, and to which others were added.
+    pub(crate) fn new(at: usize, removed: usize, added: usize) -> Self {
+        Self { at, removed, added }
+    }
+
+    /// Edits a list, with `new` items at their places. One that is empty, as if it were not given,
+    /// stays so.
+    pub(crate) fn of<T>(self, list: &mut Vec<T>, new: impl IntoIterator<Item = T>) {
+        if !list.is_empty() {
+            list.splice(self.at..self.at + self.removed, new);
+        }
+    }
+}
+
+/// Replaces each item of a list by another one, or removes it.
+fn keep<T>(list: &mut Vec<T>, change: impl FnMut(&T) -> Option<T>) {
+    *list = list.iter().filter_map(change).collect();
 }

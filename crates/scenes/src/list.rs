@@ -1,9 +1,14 @@
-//! Scenes as lists of masses and springs, for programs that read no scene files.
+//! Scenes as lists of masses and springs in JSON, for programs that read no scene files, and with
+//! the reference states of other programs.
 
-use a3_core::{Model, Network, Path, Pin, Scene};
-use serde::Serialize;
+use a3_core::{Model, Network, Path, Pin as Held, Scene};
+use serde::de::IgnoredAny;
+use serde::{Deserialize, Serialize};
 
-use crate::description::{SpringSpec, Triple};
+use crate::description::{Description, Particles, Pin, SpringSpec, Triple};
+use crate::fault::Fault;
+use crate::reader;
+use crate::reader::Places;
 use crate::snapshot::rows;
 
 /// Forces that a list states.
@@ -46,7 +51,10 @@ impl List {
     /// # Errors
     /// The scene has other parts, which are named.
     pub fn of(scene: &Scene) -> Result<Self, String> {
-        let network = network(scene)?;
+        let Some(network) = scene.model.network() else {
+            let why = "is a single equation, without masses and springs";
+            return Err(format!("the scene {} {why}", scene.name));
+        };
         let others = others(network);
         if !others.is_empty() {
             return Err(format!(
@@ -56,7 +64,21 @@ impl List {
                 others.join(", ")
             ));
         }
-        Ok(Self::new(scene, network))
+        let (x, v) = network.halves(&scene.state);
+        let springs = network.springs().map(|s| {
+            let law = s.law;
+            (s.i, s.j, law.stiffness, law.rest_length, law.damping)
+        });
+        Ok(Self {
+            name: scene.name.clone(),
+            gravity: network.gravity().map_or([0.0; 3], Into::into),
+            drag: network.drag().unwrap_or(0.0),
+            mass: network.masses().to_vec(),
+            pinned: network.pins().map(|(i, _)| i).collect(),
+            positions: rows(x),
+            velocities: rows(v),
+            springs: springs.collect(),
+        })
     }
 
     /// Lists the masses and springs of a scene without its obstacles: its motion is that of the
@@ -72,24 +94,6 @@ impl List {
             }
         }
         Self::of(&scene)
-    }
-
-    fn new(scene: &Scene, network: &Network) -> Self {
-        let (x, v) = network.halves(&scene.state);
-        let springs = network.springs().map(|s| {
-            let law = s.law;
-            (s.i, s.j, law.stiffness, law.rest_length, law.damping)
-        });
-        Self {
-            name: scene.name.clone(),
-            gravity: network.gravity().map_or([0.0; 3], Into::into),
-            drag: network.drag().unwrap_or(0.0),
-            mass: network.masses().to_vec(),
-            pinned: network.pins().map(|(i, _)| i).collect(),
-            positions: rows(x),
-            velocities: rows(v),
-            springs: springs.collect(),
-        }
     }
 
     /// Writes the list as JSON, with a line for each particle and each spring.
@@ -127,16 +131,6 @@ fn lines(items: &[impl Serialize]) -> Result<String, String> {
     })
 }
 
-/// Returns the network of a scene.
-fn network(scene: &Scene) -> Result<&Network, String> {
-    scene.model.network().ok_or_else(|| {
-        format!(
-            "the scene {} is a single equation, without masses and springs",
-            scene.name
-        )
-    })
-}
-
 /// Names the parts of a network that a list does not state.
 fn others(network: &Network) -> Vec<&'static str> {
     let forces = network.forces_in_use().into_iter();
@@ -152,7 +146,69 @@ fn others(network: &Network) -> Vec<&'static str> {
     add(!network.bodies().is_empty(), "rigid bodies");
     let moves = |(_, path): (usize, Path)| !matches!(path, Path::Still(_));
     add(network.pins().any(moves), "pins that move");
-    let lets_go = |pin: Pin| pin.until.is_some();
+    let lets_go = |pin: Held| pin.until.is_some();
     add(network.all_pins().any(lets_go), "pins that let go");
     others
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Listed {
+    name: Option<String>,
+    note: Option<String>,
+    #[serde(rename = "units")]
+    _units: Option<String>,
+    gravity: Option<[f64; 3]>,
+    drag: Option<f64>,
+    mass: Vec<f64>,
+    #[serde(default)]
+    pinned: Vec<usize>,
+    positions: Vec<[f64; 3]>,
+    #[serde(default)]
+    velocities: Vec<[f64; 3]>,
+    #[serde(default)]
+    springs: Vec<(usize, usize, f64, f64, f64)>,
+    /// Results of other programs, which a run does not need.
+    #[serde(rename = "error_bound")]
+    _error_bound: Option<f64>,
+    #[serde(rename = "states")]
+    _states: Option<IgnoredAny>,
+}
+
+/// Prefixes of keys: that of a description, and that of the list which stands for it.
+#[rustfmt::skip]
+const NAMES: &[(&str, &str)] = &[
+    ("particles.masses", "mass"), ("particles.pin.particles", "pinned"),
+    ("particles.pin", "pinned"), ("particles.", ""),
+];
+
+/// Reads a description from a list of particles and springs in JSON. The places of its keys tell
+/// the lines of faults that [`Description::build`] finds.
+///
+/// # Errors
+/// The text is not JSON, a key is unknown or missing, a value is of the wrong kind, or a
+/// number is not from -1e13 to 1e13.
+pub fn parse_json(text: &str) -> Result<(Description, Places), Fault> {
+    let (listed, places): (Listed, Places) = reader::read_json(text)?;
+    let mut pin = vec![Pin {
+        particles: listed.pinned,
+        ..Pin::default()
+    }];
+    pin.retain(|pin| !pin.particles.is_empty());
+    let description = Description {
+        name: listed.name,
+        summary: listed.note,
+        gravity: listed.gravity,
+        drag: listed.drag,
+        particles: Some(Particles {
+            positions: listed.positions,
+            velocities: listed.velocities,
+            masses: listed.mass,
+            springs: listed.springs,
+            pin,
+            ..Particles::default()
+        }),
+        ..Description::default()
+    };
+    Ok((description, places.named(NAMES)))
 }

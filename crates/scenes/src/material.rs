@@ -84,59 +84,30 @@ const fn matter(
 }
 
 /// All materials: fabrics, and then solids from soft to stiff.
+#[rustfmt::skip]
 pub static MATERIALS: [Material; 16] = [
-    fabric(
-        "silk",
-        "habotai of 10 momme",
-        [0.0434, 2015.0, 19.2, 1.0e-6],
-    ),
+    fabric("silk", "habotai of 10 momme", [0.0434, 2015.0, 19.2, 1.0e-6]),
     fabric("jersey", "a T-shirt, knitted", [0.187, 25.5, 36.9, 18.7e-6]),
     fabric("nylon", "a swimsuit, knitted", [0.204, 76.3, 60.8, 55.6e-6]),
-    fabric(
-        "polyester",
-        "a tablecloth, woven",
-        [0.128, 2015.0, 19.2, 41.5e-6],
-    ),
+    fabric("polyester", "a tablecloth, woven", [0.128, 2015.0, 19.2, 41.5e-6]),
     fabric("denim", "jeans of 11 oz", [0.324, 610.0, 53.4, 80.6e-6]),
-    fabric(
-        "blanket",
-        "a blanket of polyester",
-        [0.228, 198.0, 30.3, 88.4e-6],
-    ),
-    fabric(
-        "cotton",
-        "trousers of cotton and polyester, woven",
-        [0.22, 2026.0, 105.0, 125e-6],
-    ),
-    matter(
-        "gelatine",
-        "a dessert of 5 % gelatine",
-        [1010.0, 1.2e4, 0.48, 0.1],
-    ),
+    fabric("blanket", "a blanket of polyester", [0.228, 198.0, 30.3, 88.4e-6]),
+    fabric("cotton", "trousers of cotton and polyester, woven", [0.22, 2026.0, 105.0, 125e-6]),
+    matter("gelatine", "a dessert of 5 % gelatine", [1010.0, 1.2e4, 0.48, 0.1]),
     matter("rubber", "soft rubber", [1100.0, 2.76e6, 0.48, 0.1]),
     matter("cork", "cork, across the grain", [170.0, 1.3e7, 0.05, 0.15]),
     matter("oak", "oak, along the grain", [720.0, 1.24e10, 0.3, 0.01]),
     matter("concrete", "dense concrete", [2300.0, 2.7e10, 0.15, 0.01]),
     matter("glass", "window glass", [2500.0, 6.9e10, 0.2, 0.001]),
-    matter(
-        "aluminium",
-        "an alloy of aluminium",
-        [2800.0, 7.2e10, 0.33, 1e-5],
-    ),
+    matter("aluminium", "an alloy of aluminium", [2800.0, 7.2e10, 0.33, 1e-5]),
     matter("brass", "red brass", [8500.0, 1.04e11, 0.34, 1e-4]),
     matter("steel", "structural steel", [7800.0, 2.1e11, 0.3, 1e-3]),
 ];
 
 /// Keys that materials give, and the alternatives of these.
+#[rustfmt::skip]
 pub(crate) const KEYS: [&str; 8] = [
-    "density",
-    "mass",
-    "stiffness",
-    "damping",
-    "damping_ratio",
-    "buckling",
-    "young",
-    "poisson",
+    "density", "mass", "stiffness", "damping", "damping_ratio", "buckling", "young", "poisson",
 ];
 
 /// Value of a key that a material gives.
@@ -150,10 +121,10 @@ pub(crate) enum Given {
 /// Returns the names of the materials of fabrics, or those of solids.
 pub(crate) fn names(of_fabrics: bool) -> Vec<&'static str> {
     let is_fabric = |material: &&Material| matches!(material.stuff, Stuff::Fabric { .. });
-    let all = MATERIALS.iter();
-    all.filter(|material| is_fabric(material) == of_fabrics)
-        .map(|material| material.name)
-        .collect()
+    let all = MATERIALS
+        .iter()
+        .filter(|material| is_fabric(material) == of_fabrics);
+    all.map(|material| material.name).collect()
 }
 
 /// Returns the keys that a material gives to a table of a kind, whose own keys are read by `own`.
@@ -177,19 +148,24 @@ pub(crate) fn keys(
         return Err(unknown_choice(name, &known));
     };
     if !known.contains(&name) {
-        let (is, bodies) = if of_fabrics {
-            ("a solid", "a cloth")
-        } else {
-            ("a fabric", "a solid body")
-        };
+        let words = [("a fabric", "a solid body"), ("a solid", "a cloth")];
+        let (is, bodies) = words[usize::from(of_fabrics)];
         let known = known.join(", ");
-        return Err(format!(
-            "`{name}` is {is}: the materials of {bodies} are {known}"
-        ));
+        refuse!("`{name}` is {is}: the materials of {bodies} are {known}");
     }
     let all = match material.stuff {
-        Stuff::Fabric { .. } => of_fabric(kind, material.stuff, own),
-        Stuff::Matter { .. } => of_matter(kind, material.stuff, own),
+        Stuff::Fabric {
+            density,
+            stretch,
+            shear,
+            bending,
+        } => of_fabric(kind, [density, stretch, shear, bending], own),
+        Stuff::Matter {
+            density,
+            young,
+            poisson,
+            loss,
+        } => of_matter(kind, [density, young, poisson, loss], own),
     };
     let is_given = |key: &str| own(key).is_some();
     let is_free = |key: &&str| match *key {
@@ -205,18 +181,9 @@ pub(crate) fn keys(
 /// a mesh have no stiffness, because that would depend on the mesh.
 fn of_fabric(
     kind: &str,
-    stuff: Stuff,
+    [density, stretch, shear, bending]: [f64; 4],
     own: &dyn Fn(&str) -> Option<Vec<f64>>,
 ) -> Vec<(&'static str, Given)> {
-    let Stuff::Fabric {
-        density,
-        stretch,
-        shear,
-        bending,
-    } = stuff
-    else {
-        return vec![];
-    };
     let mut all = vec![
         ("density", Given::Number(density)),
         ("damping", Given::Number(damping(FABRIC_LOSS))),
@@ -239,14 +206,12 @@ fn of_fabric(
 /// Returns the bending stiffness (N m2) and the stiffness under compression (N/m) of the strips of
 /// the fabric of a name, which are as wide as a cell (m); `None` if there is no such fabric.
 pub(crate) fn strip_of(name: &str, spacing: f64) -> Option<[f64; 2]> {
-    let found = MATERIALS.iter().find(|it| it.name == name)?;
-    let Stuff::Fabric {
-        stretch, bending, ..
-    } = found.stuff
-    else {
-        return None;
-    };
-    Some(strip(stretch, bending, spacing).map(|(_, value)| value))
+    match MATERIALS.iter().find(|it| it.name == name)?.stuff {
+        Stuff::Fabric {
+            stretch, bending, ..
+        } => Some(strip(stretch, bending, spacing).map(|(_, value)| value)),
+        Stuff::Matter { .. } => None,
+    }
 }
 
 /// Returns the keys of the strips of a fabric of this stiffness of stretch (N/m) and of bending
@@ -263,18 +228,9 @@ fn strip(stretch: f64, bending: f64, spacing: f64) -> [(&'static str, f64); 2] {
 /// Returns the keys of a jelly, an elastic solid or a rigid body.
 fn of_matter(
     kind: &str,
-    stuff: Stuff,
+    [density, young, poisson, loss]: [f64; 4],
     own: &dyn Fn(&str) -> Option<Vec<f64>>,
 ) -> Vec<(&'static str, Given)> {
-    let Stuff::Matter {
-        density,
-        young,
-        poisson,
-        loss,
-    } = stuff
-    else {
-        return vec![];
-    };
     let mut all = vec![("density", Given::Number(density))];
     match kind {
         "Solid" => all.extend([
@@ -286,10 +242,8 @@ fn of_matter(
                 let [size, grid] = ["size", "grid"].map(|key| own(key)?.get(axis).copied());
                 Some(size? / (grid?.max(2.0) - 1.0))
             };
-            let volume = (0..3)
-                .map(|axis| cell(axis).unwrap_or(1.0))
-                .product::<f64>();
-            let stiffness = lattice(young, volume.cbrt());
+            let cells = (0..3).map(|axis| cell(axis).unwrap_or(1.0));
+            let stiffness = lattice(young, cells.product::<f64>().cbrt());
             all.push(("stiffness", Given::List(stiffness.to_vec())));
         }
         _ => return all,

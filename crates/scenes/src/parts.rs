@@ -1,8 +1,7 @@
 //! Parts of a scene that can be left out or replaced by simpler ones.
 
-use crate::assemble::damping_time;
-use crate::change::Change;
-use crate::description::{Chain, Description, Floor, FloorSpec, Jelly, Solid, WindSpec};
+use crate::assemble::{air, damping_time};
+use crate::description::{Description, Floor, Jelly};
 use crate::material::lattice;
 
 /// Part of a scene that can be left out or replaced by a simpler one.
@@ -19,11 +18,6 @@ const OBSTACLES: [&str; 4] = ["sphere", "box", "capsule", "obstacle"];
 
 /// Names of the kinds of springs.
 const SPRINGS: [&str; 3] = ["structural springs", "shear springs", "bend springs"];
-
-/// Default density of air (kg/m3).
-const AIR_DENSITY: f64 = 1.2;
-/// Default drag coefficient of a wind.
-const AIR_DRAG: f64 = 1.2;
 
 /// Lists the parts of the scene that can be left out or replaced by simpler ones.
 #[must_use]
@@ -57,14 +51,11 @@ pub fn parts(scene: &Description) -> Vec<Part> {
     let (spheres, boxes) = (scene.sphere.len(), scene.boxes.len());
     let counts = [spheres, boxes, scene.capsule.len(), scene.obstacle.len()];
     for (kind, (name, count)) in OBSTACLES.iter().zip(counts).enumerate() {
-        all.extend((0..count).map(|k| Part {
-            name: if count > 1 {
-                format!("{name} {}", k + 1)
-            } else {
-                (*name).into()
-            },
-            change: Change::Obstacle(kind, k),
-        }));
+        let numbered = |k: usize| match count {
+            1 => (*name).to_owned(),
+            _ => format!("{name} {}", k + 1),
+        };
+        all.extend((0..count).map(|k| named(Change::Obstacle(kind, k), &numbered(k))));
     }
     all.extend([
         named(Change::Rods, "springs of chains: rods"),
@@ -127,27 +118,17 @@ fn leave_out(scene: &mut Description, change: Change) {
             scene.tension_only = false;
         }
         Change::Gas => {
-            for mesh in &mut scene.mesh {
-                (mesh.pressure, mesh.fill) = (None, None);
-            }
+            let meshes = scene.mesh.iter_mut();
+            meshes.for_each(|mesh| (mesh.pressure, mesh.fill) = (None, None));
         }
         Change::Ropes => scene.constraint.retain(|it| it.rope.is_none()),
         Change::Tear => scene.tear = None,
-        Change::Viscosity => {
-            for fluid in &mut scene.fluid {
-                fluid.viscosity = 0.0;
-            }
-        }
-        Change::Wind => {
-            if let Some(wind) = &mut scene.wind {
-                wind.on = false;
-            }
-        }
-        Change::Gusts => {
-            if let Some(wind) = scene.wind.as_mut().filter(|wind| wind.on) {
-                wind.steady = true;
-            }
-        }
+        Change::Viscosity => scene.fluid.iter_mut().for_each(|it| it.viscosity = 0.0),
+        Change::Wind => scene.wind.iter_mut().for_each(|wind| wind.on = false),
+        Change::Gusts => scene
+            .wind
+            .iter_mut()
+            .for_each(|wind| wind.steady |= wind.on),
         Change::WindByParticles => simplify_wind(scene),
         Change::Friction => {
             each_contact(scene, |[friction, _]| *friction = 0.0);
@@ -176,12 +157,8 @@ fn leave_out_damping(scene: &mut Description) {
         let numbers = body.damping.into_iter().chain(body.damping_ratio);
         numbers.for_each(|number| *number = None);
     }
-    for Solid { damping, .. } in &mut scene.solid {
-        *damping = 0.0;
-    }
-    for Chain { damping, .. } in &mut scene.chain {
-        *damping = 0.0;
-    }
+    scene.solid.iter_mut().for_each(|solid| solid.damping = 0.0);
+    scene.chain.iter_mut().for_each(|chain| chain.damping = 0.0);
     let particles = scene.particles.iter_mut();
     let own = particles.flat_map(|particles| &mut particles.springs);
     for spring in own.chain(&mut scene.springs) {
@@ -224,13 +201,8 @@ fn each_contact(scene: &mut Description, mut change: impl FnMut([&mut f64; 2])) 
         };
     }
     change!(scene.sphere, scene.boxes, scene.capsule, scene.obstacle);
-    if let Some(Floor::Table(FloorSpec {
-        friction,
-        restitution,
-        ..
-    })) = &mut scene.floor
-    {
-        change([friction, restitution]);
+    if let Some(Floor::Table(floor)) = &mut scene.floor {
+        change([&mut floor.friction, &mut floor.restitution]);
     }
     for rope in &mut scene.constraint {
         change([&mut 0.0, &mut rope.restitution]);
@@ -258,20 +230,11 @@ fn simplify_wind(scene: &mut Description) {
         return;
     };
     let speed = velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
-    let (density, drag) = (
-        wind.density.unwrap_or(AIR_DENSITY),
-        wind.drag.unwrap_or(AIR_DRAG),
-    );
+    let [density, drag, _] = air(wind);
     let each = 0.5 * density * drag * speed * area / mass;
-    *wind = WindSpec {
-        on: wind.on,
-        seed: wind.seed,
-        steady: wind.steady,
-        force_per_mass: Some(velocity.map(|v| each * v)),
-        ahead: wind.ahead,
-        region: wind.region.take(),
-        ..WindSpec::default()
-    };
+    wind.force_per_mass = Some(velocity.map(|v| each * v));
+    (wind.velocity, wind.force) = (None, None);
+    (wind.density, wind.drag, wind.lift) = (None, None, None);
 }
 
 /// Replaces boxes of elastic solids by jellies that are equally stiff under small strains. It
@@ -282,10 +245,8 @@ fn replace_solids(scene: &mut Description) {
         return;
     }
     for solid in std::mem::take(&mut scene.solid) {
-        let (grid, size) = (
-            solid.grid.unwrap_or_default(),
-            solid.size.unwrap_or_default(),
-        );
+        let grid = solid.grid.unwrap_or_default();
+        let size = solid.size.unwrap_or_default();
         let cell = |axis: usize| size[axis] / (grid[axis].max(2) - 1) as f64;
         let spacing = (cell(0) * cell(1) * cell(2)).cbrt();
         scene.jelly.push(Jelly {
@@ -306,6 +267,54 @@ fn replace_solids(scene: &mut Description) {
     }
 }
 
+/// Change of a description that leaves a part out, or replaces it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// Gravity.
+    Gravity,
+    /// Drag on particles.
+    Drag,
+    /// Damping of springs and solids.
+    Damping,
+    /// Springs of a kind: 0 for structural ones, 1 for shear, 2 for bend.
+    Springs(usize),
+    /// Buckling of bend springs.
+    Buckling,
+    /// Limit of strain.
+    StrainLimit,
+    /// Springs that only pull, replaced by springs that also push.
+    TensionOnly,
+    /// Ropes.
+    Ropes,
+    /// Gas in closed meshes.
+    Gas,
+    /// Tearing.
+    Tear,
+    /// Viscosity of fluids.
+    Viscosity,
+    /// Wind.
+    Wind,
+    /// Gusts of the wind.
+    Gusts,
+    /// Wind that blows on triangles, replaced by forces on particles.
+    WindByParticles,
+    /// Friction.
+    Friction,
+    /// Restitution.
+    Restitution,
+    /// Contact of surfaces with one another and themselves.
+    SelfCollision,
+    /// Floor.
+    Floor,
+    /// Obstacle: its kind (0 for a sphere, 1 a box, 2 a capsule, 3 a mesh), and its index among
+    /// those of its kind.
+    Obstacle(usize, usize),
+    /// Springs of chains, replaced by rods.
+    Rods,
+    /// Boxes of elastic solids, replaced by jellies.
+    Jelly,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -323,15 +332,8 @@ mod tests {
         let more = format!(
             "drag = 0.1\ntear = 2.0\nfloor = {{ height = -1, friction = 0.5 }}\n{chain}damping = 0.1\n"
         );
-        let all = [
-            "drag",
-            "damping of springs and solids",
-            "tearing",
-            "friction",
-            "floor",
-            "springs of chains: rods",
-        ];
-        assert_eq!(names(&more), all);
+        let all = "drag, damping of springs and solids, tearing, friction, floor, springs of chains: rods";
+        assert_eq!(names(&more).join(", "), all);
     }
 
     #[test]

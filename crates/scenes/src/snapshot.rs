@@ -52,12 +52,13 @@ pub fn scale_springs(description: &mut Description, stiffness: f64, damping: f64
 /// Multiplies the force or velocity of the wind by a factor, if there is wind.
 pub fn scale_wind(description: &mut Description, factor: f64) {
     if let Some(wind) = &mut description.wind {
-        for mean in [
+        let means = [
             &mut wind.force,
             &mut wind.force_per_mass,
             &mut wind.velocity,
-        ] {
-            *mean = mean.map(|mean| mean.map(|x| x * factor));
+        ];
+        for x in means.into_iter().flatten().flatten() {
+            *x *= factor;
         }
     }
 }
@@ -70,11 +71,12 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
     description.solver = Some(now.run.method.name.into());
     description.step = Some(now.run.control.value());
     let mut parts = now.run.y.chunks_exact(3 * n);
+    let network = model.network();
+    let bodies = 0..network.map_or(0, |network| network.bodies().len());
     let rotations = || {
-        let network = model.network().into_iter();
-        network.flat_map(|network| {
-            (0..network.bodies().len()).map(|k| network.rotation(k, &now.run.y))
-        })
+        network
+            .into_iter()
+            .flat_map(|it| bodies.clone().map(|k| it.rotation(k, &now.run.y)))
     };
     description.state = Some(State {
         positions: parts.next().map(rows).unwrap_or_default(),
@@ -82,7 +84,7 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
         orientations: rotations().map(|r| [r.q.w, r.q.i, r.q.j, r.q.k]).collect(),
         angular_momenta: rotations().map(|r| r.momentum.into()).collect(),
     });
-    let Some(network) = model.network() else {
+    let Some(network) = network else {
         return;
     };
     description.change_gravity(network.gravity().map(Into::into));
@@ -109,18 +111,17 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
 /// Returns the rows of particles whose numbers are all x, all y, all z.
 pub(crate) fn rows(part: &[f64]) -> Vec<Triple> {
     let n = part.len() / 3;
-    (0..n)
-        .map(|i| [part[i], part[n + i], part[2 * n + i]])
-        .collect()
+    let row = |i| [part[i], part[n + i], part[2 * n + i]];
+    (0..n).map(row).collect()
 }
 
 /// Replaces the pins of a description by those of another one of the same bodies, in its words.
 pub fn pin_as(description: &mut Description, mut other: Description) {
     let pinned = description.bodies_mut().filter_map(|body| body.pin);
     let others = other.bodies_mut().filter_map(|body| body.pin);
-    pinned
-        .zip(others)
-        .for_each(|(pins, others)| std::mem::swap(pins, others));
+    for (pins, others) in pinned.zip(others) {
+        std::mem::swap(pins, others);
+    }
     description.pin = other.pin;
 }
 
@@ -176,18 +177,17 @@ fn write_obstacles(description: &mut Description, network: &Network, t: f64) {
                     set(described);
                 }
             }
-            Shape::Floor if [friction, restitution, obstacle.thickness] == [0.0; 3] => {
-                description.floor = Some(Floor::Height(here.y));
-            }
             Shape::Floor => {
-                let height = here.y;
-                let thickness = Some(obstacle.thickness).filter(|d| *d > 0.0);
-                description.floor = Some(Floor::Table(FloorSpec {
+                let (height, thickness) = (here.y, Some(obstacle.thickness).filter(|d| *d > 0.0));
+                let floor = FloorSpec {
                     height,
                     friction,
                     restitution,
                     thickness,
-                }));
+                };
+                let is_plain = [friction, restitution, obstacle.thickness] == [0.0; 3];
+                let plain = Floor::Height(height);
+                description.floor = Some(if is_plain { plain } else { Floor::Table(floor) });
             }
         }
     }
@@ -306,8 +306,9 @@ fn motion(path: &Path, t: f64) -> Motion {
                 start,
                 end,
             };
+            let about = Some(axis.at(t).position.into());
             Motion {
-                about: Some(axis.at(t).position.into()),
+                about,
                 ..motion(&axis, t)
             }
         }

@@ -2,18 +2,18 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
+use std::str::FromStr;
 
 /// Byte order mark of UTF-8.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Beginnings of files that are no texts, and advice for each.
+#[rustfmt::skip]
 const OTHERS: [(&[u8], &str); 5] = [
     (b"\x1f\x8b", "it is compressed by gzip: unpack it"),
     (b"PK\x03\x04", "it is a zip archive: unpack it"),
-    (
-        b"version https://git-lfs",
-        "it is a pointer of Git LFS and not the file itself: fetch it by `git lfs pull`",
-    ),
+    (b"version https://git-lfs",
+        "it is a pointer of Git LFS and not the file itself: fetch it by `git lfs pull`"),
     (b"<!DOCTYPE", "it is a web page: download the file itself"),
     (b"<html", "it is a web page: download the file itself"),
 ];
@@ -38,12 +38,9 @@ pub fn unmarked(text: &[u8]) -> Result<&[u8], String> {
         !begin.is_empty() && begin.chunks_exact(size).all(is_letter)
     };
     let is_marked_32 = matches!(text, [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..]);
-    if is_marked_32 || is_wide_by(4) {
-        return Err("it is UTF-32 text: save it as UTF-8".into());
-    }
-    if matches!(text, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) || is_wide_by(2) {
-        return Err("it is UTF-16 text: save it as UTF-8".into());
-    }
+    refuse!(if is_marked_32 || is_wide_by(4) => "it is UTF-32 text: save it as UTF-8");
+    refuse!(if matches!(text, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) || is_wide_by(2) =>
+        "it is UTF-16 text: save it as UTF-8");
     Ok(text.strip_prefix(MARK).unwrap_or(text))
 }
 
@@ -117,6 +114,11 @@ impl<'a> Iterator for Lines<'a> {
 /// Shortens a word for a message.
 pub(crate) fn brief(word: &[u8]) -> Cow<'_, str> {
     String::from_utf8_lossy(&word[..word.len().min(40)])
+}
+
+/// Reads a word as a number.
+pub(crate) fn number<T: FromStr>(word: &[u8]) -> Option<T> {
+    str::from_utf8(word).ok()?.parse().ok()
 }
 
 /// Splits a statement into words, at spaces, ends of lines and backslashes.

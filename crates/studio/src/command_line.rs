@@ -2,7 +2,7 @@
 
 use a3_core::{Simulation, StepLimits};
 use a3_files::failure::Failure;
-use a3_media::show::has_springs;
+use a3_media::show::{Quantity, has_springs};
 use a3_render::Style;
 
 use crate::begin;
@@ -16,13 +16,11 @@ use crate::session::{Session, looks, read, write_scene};
 pub fn of(session: &Session, at: usize) -> Result<String, Failure> {
     let mut words = arguments(session, at);
     if !recreates(&words, session) {
+        let run = session.runs.first();
         let written = if session.runs.panes.len() == 1 {
-            write_scene(session, session.runs.first())
+            write_scene(session, run)
         } else {
-            write_scene(
-                session,
-                &begun_again(session.runs.first()).map_err(Failure::run)?,
-            )
+            write_scene(session, &begun_again(run).map_err(Failure::run)?)
         };
         words = arguments_with_scene(session, at, &written.map_err(Failure::Run)?);
     }
@@ -67,19 +65,14 @@ fn arguments_with_scene(session: &Session, at: usize, scene: &str) -> Vec<String
     };
     let StepLimits { absolute, max_step } = session.scenes.shown.limits;
     for (name, limit) in [("--absolute", absolute), ("--max-step", max_step)] {
-        words.extend(
-            limit
-                .into_iter()
-                .flat_map(|limit| [name.into(), limit.to_string()]),
-        );
+        let given = limit.map(|limit| [name.into(), limit.to_string()]);
+        words.extend(given.into_iter().flatten());
     }
     let show = &session.runs.panes[at].show;
     let mut option = |name: &str, value: &str| words.extend([name.into(), value.into()]);
     option("--scene", scene);
-    let coloured = show.colouring.quantity;
-    if let Some(quantity) =
-        coloured.filter(|quantity| looks::has_quantity(&session.runs.panes, *quantity))
-    {
+    let is_there = |it: &Quantity| looks::has_quantity(&session.runs.panes, *it);
+    if let Some(quantity) = show.colouring.quantity.filter(is_there) {
         option("--colour", quantity.name());
     }
     if let Some(arrows) = show.field.arrows {

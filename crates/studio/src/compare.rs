@@ -50,12 +50,8 @@ pub fn table(session: &Session) -> String {
     let chaos = readings.predictable.filter(past).map(|until| {
         format!("errors past {until} s say little: small differences have grown 10,000 times\n")
     });
-    [head.to_owned()]
-        .into_iter()
-        .chain(lines)
-        .chain(why)
-        .chain(chaos)
-        .collect()
+    let rest = lines.chain(why).chain(chaos);
+    [head.to_owned()].into_iter().chain(rest).collect()
 }
 
 /// Returns the table row of a pane.

@@ -7,8 +7,8 @@ use a3_files::failure::Failure;
 use a3_files::output;
 use a3_files::scene_file::Source;
 
+use crate::session::Session;
 use crate::session::panel;
-use crate::session::{Session, show_edited};
 
 /// Saves the run of pane `at` under the first free name, in the folder of its scene file if it has
 /// one, and returns the path. Fails if the file cannot be written.
@@ -45,7 +45,7 @@ pub fn load(session: &mut Session, path: &Path) -> Result<(), Failure> {
     let edited = kept.edited.as_deref().map(Source::written).transpose();
     let edited = edited.map_err(|error| refuse(error.to_string()))?;
     let edited = edited.as_ref().map(|source| &*source.description);
-    show_edited(session, edited).map_err(refuse)?;
+    session.show_edited(edited).map_err(refuse)?;
     panel::tune(session, &kept.tuned).map_err(refuse)?;
     let taken = session.restore(&kept.checkpoint);
     taken.map_err(|why| refuse(why.to_string()))?;

@@ -21,8 +21,6 @@ mod app;
 mod command_line;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod compare;
-#[cfg(not(target_arch = "wasm32"))]
-mod headless;
 mod hud;
 mod keep;
 #[cfg(not(target_arch = "wasm32"))]

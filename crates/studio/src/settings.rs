@@ -76,17 +76,12 @@ impl Settings {
                 .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
             format!("{place}:{line}: this is not a setting of a3")
         })?;
-        let [least, .., most] = SCALES;
-        let limit = f64::from(read.frame_limit);
+        let [least, .., most] = SCALES.map(f64::from);
+        let scale = read.interface_scale.into();
         for (name, value, low, high) in [
-            (
-                "interface_scale",
-                f64::from(read.interface_scale),
-                least.into(),
-                most.into(),
-            ),
+            ("interface_scale", scale, least, most),
             ("film_seconds", read.film_seconds, 1.0, SPAN),
-            ("frame_limit", limit, 0.0, 1000.0),
+            ("frame_limit", read.frame_limit.into(), 0.0, 1000.0),
         ] {
             if !(low..=high).contains(&value) {
                 return Err(format!("{place}: {name} must be from {low} to {high}"));

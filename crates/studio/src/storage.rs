@@ -52,8 +52,6 @@ pub fn file() -> PathBuf {
     } else {
         named("XDG_CONFIG_HOME").or_else(|| home(".config"))
     };
-    folder
-        .unwrap_or_else(env::temp_dir)
-        .join("a3")
-        .join("settings.toml")
+    let folder = folder.unwrap_or_else(env::temp_dir);
+    folder.join("a3").join("settings.toml")
 }

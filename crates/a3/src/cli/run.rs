@@ -1,13 +1,16 @@
-//! The options of runs: what is simulated, how, and until when.
+//! The options of runs: what is simulated, how, and until when; and the measures of their errors
+//! and costs.
 
+use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Disturbances, Grid, Method, StepLimits};
-use a3_files::arguments::{absolute, grid, max_step, step, threads};
+use a3_files::arguments::{absolute, grid, max_step, particle, step, threads};
 use a3_files::failure::Failure;
 use a3_files::setup::{Request, Run, SceneOptions};
 use a3_files::{holding, terminal};
-use clap::Args;
+use clap::builder::TypedValueParser;
+use clap::{Args, ValueEnum};
 
-use super::values::{SCENE, SOLVER, until};
+use super::values::{SCENE, SOLVER, choice, until};
 
 /// Options of a scene: its name or file, its grid, wind, swing and self-collision.
 #[derive(Args)]
@@ -46,23 +49,22 @@ impl SceneArgs {
         }
     }
 
-    /// Limits the program to the number of threads that is asked for, if one is.
-    pub fn limit_threads(&self) {
-        if let Some(count) = self.threads {
-            // Only the first call has an effect; later ones fail because the threads are there
-            // already.
-            let threads = rayon::ThreadPoolBuilder::new().num_threads(count);
-            let _ = threads.build_global();
-        }
-    }
-
     /// Reads the scene, after it has limited the program's threads.
     ///
     /// # Errors
     /// There is no such scene, or its file has a fault.
     pub fn request(&self) -> Result<Request, Failure> {
-        self.limit_threads();
+        limit_threads(self.threads);
         Request::read(&self.scene, self.options())
+    }
+}
+
+/// Limits the program to the number of threads that is asked for, if one is.
+pub fn limit_threads(threads: Option<usize>) {
+    if let Some(count) = threads {
+        // Only the first call has an effect; later ones fail because the threads are there already.
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(count);
+        let _ = threads.build_global();
     }
 }
 
@@ -153,4 +155,56 @@ impl RunOptions {
             until,
         })
     }
+}
+
+/// Creates a parser of the metric of errors.
+pub fn metric() -> impl TypedValueParser<Value = Metric> {
+    choice(&Metric::OF_PARTICLES, |metric| {
+        let help = match metric {
+            Metric::Position => "Positions, root mean square over the particles (m)",
+            Metric::State => "Numbers of a state without particles",
+            Metric::Energy => "Total energy (J)",
+            Metric::Strain => "Lengths of the springs over their rest lengths, root mean square",
+            Metric::Momentum => "Total momentum of the particles that are not pinned (kg m/s)",
+            Metric::Phase => "Time by which the motion is ahead or behind (s)",
+            Metric::Penetration => {
+                "Largest depth of a surface within the thickness of another, over that thickness"
+            }
+            Metric::Impact => {
+                "Times at which surfaces first touch, and at which nothing touches any more (s)"
+            }
+        };
+        (metric.name(), help)
+    })
+}
+
+/// Particles and times at which errors are taken.
+#[derive(Args)]
+pub struct ErrorScope {
+    /// Take the errors of position and phase from particle I alone
+    #[arg(long, value_name = "I", value_parser = particle, allow_negative_numbers = true)]
+    pub particle: Option<usize>,
+    /// Take the error at the end, instead of the largest one during the run
+    #[arg(long)]
+    pub at_end: bool,
+}
+
+impl ErrorScope {
+    /// Returns the particle and the times that were given.
+    pub fn given(&self) -> Scope {
+        Scope {
+            particle: self.particle,
+            at_end: self.at_end,
+        }
+    }
+}
+
+/// Measure of the cost.
+#[derive(Clone, Copy, ValueEnum, PartialEq)]
+pub enum WorkMeasure {
+    /// Computing time on this machine
+    #[value(alias = "seconds")]
+    Time,
+    /// Evaluations of the forces, the same on every machine
+    Evaluations,
 }

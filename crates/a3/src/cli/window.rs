@@ -11,7 +11,7 @@ use a3_studio::session::Opening;
 use clap::Args;
 use clap::builder::TypedValueParser;
 
-use super::run::{RunOptions, SceneArgs, StepOptions};
+use super::run::{RunOptions, SceneArgs, StepOptions, limit_threads};
 use super::values::{SOLVER_AND_STEP, SOLVER_OR_COMMAND, beginning, choice, rate, size, until};
 
 #[derive(Args)]
@@ -43,7 +43,7 @@ pub struct WindowOptions {
 impl WindowOptions {
     /// Returns what the window is to open with.
     pub fn opening(&self) -> Opening {
-        self.what.limit_threads();
+        limit_threads(self.what.threads);
         Opening {
             methods: vec![(self.solver, self.step)],
             manner: self.look.manner.of(self.springs_of),
@@ -158,7 +158,7 @@ impl Compare {
     /// There are fewer than two or more than four solvers.
     pub fn opening(&self) -> Result<Opening, Failure> {
         check_count(self.methods.len())?;
-        self.what.limit_threads();
+        limit_threads(self.what.threads);
         let methods = self.methods.iter();
         Ok(Opening {
             methods: methods

@@ -3,23 +3,19 @@
 use std::path::Path;
 
 use a3_core::Scene;
-use a3_core::accuracy::Horizon;
 use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_files::output;
 use a3_files::states::{States, read};
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::{Label, describe};
-use a3_lab::figure_file::{PICTURES, write_picture};
-use a3_lab::judge::judgement::{Course, Judgement, judge};
-use a3_lab::judge::picture;
-use a3_lab::judge::plain::Plain;
-use a3_lab::judge::summary::Record;
-use a3_lab::judge::trial::Way;
-use a3_lab::judge::truth::Truth;
-use a3_lab::judge::value::{look_ahead as horizon_of, stopped};
+use a3_lab::judge::judgement::Judgement;
+use a3_lab::judge::picture::chart;
+use a3_lab::judge::trial::Course;
+use a3_lab::judge::value::Record;
 use a3_lab::judge::words::{is_resolved, is_within, orders, text, too_large};
 
+use super::picture::{self, PICTURES, write_picture};
 use crate::cli::Judge;
 
 /// Judges the files that the command line names.
@@ -29,24 +25,20 @@ pub fn run(options: &Judge) -> Result<(), Failure> {
     let mut refused = vec![];
     let files = files(options, &scene, &mut refused)?;
     let bar = Bar::new(files.len() as f64);
-    let horizon = look_ahead(options, &scene, &files, &bar)?;
-    let judged = judge_all(options, &scene, &horizon, &files, &mut refused, &bar)?;
-    print(options, &scene, &horizon, &judged)?;
+    bar.say("looking ahead  ");
+    let ends = files.iter().filter_map(|(_, states)| states.times.last());
+    let last = ends.fold(0.0, |last: f64, end| last.max(*end));
+    let mut course = Course::new(&scene, last, options.until, options.step, &bar)?;
+    let judged = judge_all(options, &mut course, &files, &mut refused, &bar)?;
+    print(options, &course, &judged)?;
     if let Some(path) = &options.chart {
-        let until = judged.iter().map(|(_, judgement)| judgement.until);
-        let until = until.fold(0.0, f64::max);
         let label = Label::asked(options.what.options().on, &scene, scene.name.clone());
-        let (chart, complete) =
-            picture::chart(&label, &scene, horizon.motion, until, &judged, &bar)?;
+        let (chart, complete) = chart(&label, &course, &judged, &bar)?;
         let (width, height) = options.size;
         let figure = chart.draw(f64::from(width), f64::from(height));
         write_picture(path, &figure.map_err(Failure::usage)?)?;
         bar.pause(|| terminal::say(&format!("chart: {}\n", path.display())))?;
-        if !complete {
-            return Err(Failure::Interrupted(
-                "interrupted: the chart has what was measured until then".into(),
-            ));
-        }
+        picture::check_complete(complete)?;
     }
     bar.clear();
     verdict(options, &judged, refused.len())
@@ -65,12 +57,9 @@ fn scene(options: &Judge) -> Result<Scene, Failure> {
     if let Some(path) = &options.chart {
         output::check(path, PICTURES)?;
     }
-    if let Some(path) = options
-        .summary
-        .as_deref()
-        .filter(|path| *path != Path::new("-"))
-    {
-        output::check(path, &["json"])?;
+    match options.summary.as_deref() {
+        Some(path) if path != Path::new("-") => output::check(path, &["json"])?,
+        _ => {}
     }
     Ok(scene)
 }
@@ -111,47 +100,20 @@ fn none() -> Failure {
     Failure::usage("no file could be judged")
 }
 
-/// Finds how long errors mean something on the scene, up to the last state of the files.
-fn look_ahead(
-    options: &Judge,
-    scene: &Scene,
-    files: &[(String, States)],
-    bar: &Bar,
-) -> Result<Horizon, Failure> {
-    bar.say("looking ahead  ");
-    let ends = files.iter().filter_map(|(_, states)| states.times.last());
-    let last = ends.fold(0.0, |last: f64, end| last.max(*end));
-    horizon_of(scene, last, options.until, bar)
-}
-
 /// Judges all files.
 fn judge_all(
     options: &Judge,
-    scene: &Scene,
-    horizon: &Horizon,
+    course: &mut Course,
     files: &[(String, States)],
     refused: &mut Vec<Failure>,
     bar: &Bar,
 ) -> Result<Vec<(String, Judgement)>, Failure> {
-    let plain = Plain::of(scene).ok();
-    let course = Course {
-        monitor: bar,
-        scene,
-        plain: plain.as_ref(),
-        until: horizon.until,
-        step: options.step,
-    };
-    let mut truth = Truth::new(scene, horizon, bar);
     let mut judged = vec![];
     for (name, states) in files {
         bar.say(&format!("{name}  "));
-        match judge(&course, &mut truth, states) {
-            Ok(Some(judgement)) => judged.push((name.clone(), judgement)),
-            Ok(None) => return Err(stopped()),
-            Err(Failure::Usage(why)) => {
-                let why = Failure::usage(format!("{name}: {why}"));
-                refuse(options, why, refused)?;
-            }
+        match course.judge(name, states) {
+            Ok(judgement) => judged.push((name.clone(), judgement)),
+            Err(why @ Failure::Usage(_)) => refuse(options, why, refused)?,
             Err(failure) => return Err(failure),
         }
         bar.advance(1.0);
@@ -164,32 +126,23 @@ fn judge_all(
 }
 
 /// Prints the judgements, or writes them as JSON.
-fn print(
-    options: &Judge,
-    scene: &Scene,
-    horizon: &Horizon,
-    judged: &[(String, Judgement)],
-) -> Result<(), Failure> {
+fn print(options: &Judge, course: &Course, judged: &[(String, Judgement)]) -> Result<(), Failure> {
     if let Some(path) = &options.summary {
-        let records: Vec<_> = judged
-            .iter()
-            .map(|(name, judgement)| Record::of(name, judgement, options.within))
-            .collect();
+        let records = judged.iter();
+        let records = records.map(|(name, it)| Record::of(name, it, options.within));
+        let records: Vec<_> = records.collect();
         let json = serde_json::to_string_pretty(&records).map_err(Failure::run)? + "\n";
         if path == Path::new("-") {
             return terminal::send(&json);
         }
         output::write(path, json.as_bytes())?;
     }
-    let name = describe(options.what.options().on, scene);
-    if judged
-        .iter()
-        .any(|(_, judgement)| judgement.judged < judgement.states)
-        && options.until.is_none()
-    {
+    let is_cut = |(_, judgement): &(_, Judgement)| judgement.judged < judgement.states;
+    if options.until.is_none() && judged.iter().any(is_cut) {
+        let name = describe(options.what.options().on, course.scene);
+        let (lyapunov, until) = (course.horizon.lyapunov, course.horizon.until);
         terminal::say(&format!(
-            "{name}: errors grow by themselves e-fold every {:.2} s (Lyapunov time); judged up to {} s\n",
-            horizon.lyapunov, horizon.until
+            "{name}: errors grow by themselves e-fold every {lyapunov:.2} s (Lyapunov time); judged up to {until} s\n"
         ))?;
     }
     for (k, (name, judgement)) in judged.iter().enumerate() {
@@ -207,20 +160,17 @@ fn print(
 /// none.
 fn program_orders(judged: &[(String, Judgement)]) -> String {
     let way = |judgement: &Judgement| judgement.found.found.map(|found| found.trial.way);
-    let mut ways: Vec<_> = judged.iter().map(|(_, judgement)| way(judgement)).collect();
-    ways.dedup();
-    let of = |chosen: &Option<Way>| {
-        let own = judged
-            .iter()
-            .filter(|(_, judgement)| way(judgement) == *chosen);
-        let runs = own.filter(|(_, judgement)| is_resolved(judgement));
-        let runs = runs.filter_map(|(name, judgement)| {
+    let ways: Vec<_> = judged.iter().map(|(_, judgement)| way(judgement)).collect();
+    let of = |k: usize| {
+        let own = judged.iter().zip(&ways).filter(|(_, way)| **way == ways[k]);
+        let runs = own.filter(|((_, judgement), _)| is_resolved(judgement));
+        let runs = runs.filter_map(|((name, judgement), _)| {
             Some((&**name, judgement.step?, judgement.worst.error))
         });
         orders(&runs.collect::<Vec<_>>())
     };
     let once = |k: &usize| !ways[..*k].contains(&ways[*k]);
-    (0..ways.len()).filter(once).map(|k| of(&ways[k])).collect()
+    (0..ways.len()).filter(once).map(of).collect()
 }
 
 /// Fails if a file was refused, or errs by more than was asked for.
@@ -234,20 +184,15 @@ fn verdict(options: &Judge, judged: &[(String, Judgement)], refused: usize) -> R
     let Some(within) = options.within else {
         return Ok(());
     };
-    let missed: Vec<_> = judged
-        .iter()
-        .filter(|(_, judgement)| !is_within(judgement, within))
-        .collect();
-    match &missed[..] {
-        [] => Ok(()),
-        [(name, judgement)] => Err(Failure::run(format!(
-            "{name}: {}",
-            too_large(judgement, within)
-        ))),
-        several => Err(Failure::run(format!(
+    let is_missed = |(_, judgement): &&(_, _)| !is_within(judgement, within);
+    let missed: Vec<_> = judged.iter().filter(is_missed).collect();
+    Err(Failure::run(match &missed[..] {
+        [] => return Ok(()),
+        [(name, judgement)] => format!("{name}: {}", too_large(judgement, within)),
+        several => format!(
             "{} of {} files err by more than {within:e} m",
             several.len(),
             judged.len()
-        ))),
-    }
+        ),
+    }))
 }

@@ -2,7 +2,7 @@
 
 use a3_core::Rounded;
 use a3_files::failure::Failure;
-use a3_files::report::table;
+use a3_files::report::{headings, table};
 use a3_files::setup::find;
 use a3_files::terminal;
 use a3_scenes::{Description, List, MATERIALS, Stuff};
@@ -26,33 +26,21 @@ pub fn scenes(options: &Scenes) -> Result<(), Failure> {
     if options.materials {
         return terminal::say(&materials());
     }
-    let heading = [
-        "scene",
-        "grid",
-        " particles",
-        " springs",
-        " state",
-        "forces",
-        "what it is",
-    ];
-    let mut rows = vec![heading.map(String::from).to_vec()];
+    let mut rows = headings("scene|grid| particles| springs| state|forces|what it is");
     for entry in a3_scenes::SCENES {
         let scene = entry.build(None).map_err(Failure::run)?.scene;
-        let network = scene.model.network();
+        let (network, grid) = (scene.model.network(), scene.grid());
+        let summary = entry.description().ok().and_then(|it| it.summary);
         rows.push(vec![
             entry.name.into(),
-            scene.grid().map_or("-".into(), |grid| {
+            grid.map_or("-".into(), |grid| {
                 format!("{}x{}", grid.rows(), grid.cols())
             }),
             scene.model.particles().to_string(),
             network.map_or(0, |n| n.springs().count()).to_string(),
             scene.model.system().dim().to_string(),
             network.map_or("-".into(), |n| n.forces_in_use().join(", ")),
-            entry
-                .description()
-                .ok()
-                .and_then(|d| d.summary)
-                .unwrap_or_default(),
+            summary.unwrap_or_default(),
         ]);
     }
     terminal::say(&table(&rows))
@@ -60,24 +48,8 @@ pub fn scenes(options: &Scenes) -> Result<(), Failure> {
 
 /// Returns the tables of the materials: fabrics, and solids.
 fn materials() -> String {
-    let fabrics = [
-        "fabric",
-        " kg/m2",
-        " stretch N/m",
-        " shear N/m",
-        " bending N m",
-        "what it is",
-    ];
-    let solids = [
-        "solid",
-        " kg/m3",
-        " Young Pa",
-        " Poisson",
-        " loss",
-        "what it is",
-    ];
-    let [mut fabrics, mut solids] =
-        [fabrics, solids].map(|row| vec![row.map(String::from).to_vec()]);
+    let mut fabrics = headings("fabric| kg/m2| stretch N/m| shear N/m| bending N m|what it is");
+    let mut solids = headings("solid| kg/m3| Young Pa| Poisson| loss|what it is");
     for material in &MATERIALS {
         let (rows, numbers) = match material.stuff {
             Stuff::Fabric {

@@ -8,10 +8,9 @@ use a3_files::output;
 use a3_files::setup::Request;
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::describe;
-use a3_lab::figure_file::PICTURES;
 use a3_lab::simplify::{Simplified, SimplifyOptions, measure};
 
-use super::picture;
+use super::picture::{self, PICTURES};
 use crate::cli::Simplify;
 
 /// Measures models of a scene, prints them, and writes the leanest.
@@ -42,16 +41,15 @@ pub fn run(options: &Simplify) -> Result<(), Failure> {
         draw(path, options, &found)?;
     }
     terminal::say(&found.text())?;
-    match (&found.lean, &options.output) {
-        (Some(lean), Some(path)) => {
-            output::write(path, lean.scene.as_bytes())?;
-            terminal::say(&format!("scene: {}\n", path.display()))
-        }
-        (Some(_), None) => Ok(()),
-        (None, _) => Err(Failure::Interrupted(
-            "interrupted: the table has what was measured until then".into(),
-        )),
-    }
+    let Some(lean) = &found.lean else {
+        let why = "interrupted: the table has what was measured until then";
+        return Err(Failure::Interrupted(why.into()));
+    };
+    let Some(path) = &options.output else {
+        return Ok(());
+    };
+    output::write(path, lean.scene.as_bytes())?;
+    terminal::say(&format!("scene: {}\n", path.display()))
 }
 
 /// Draws the chart of models, and says where it is.
@@ -94,22 +92,19 @@ fn check_folder(path: &Path, request: &Request) -> Result<(), Failure> {
         || description.solid.iter().any(|solid| solid.file.is_some())
         || parts.into_iter().any(|part| part.file.is_some());
     let folder = |path: &Path| path.parent().map(Path::to_path_buf).unwrap_or_default();
-    let own = request
-        .source
-        .path
-        .as_deref()
-        .map(folder)
-        .unwrap_or_default();
-    if has_files && folder(path) != own {
-        return Err(Failure::usage(format!(
-            "{}: the scene has meshes in files beside it: write the lean scene to the folder {}",
-            path.display(),
-            if own.as_os_str().is_empty() {
-                ".".into()
-            } else {
-                own.display().to_string()
-            }
-        )));
+    let own = request.source.path.as_deref().map(folder);
+    let own = own.unwrap_or_default();
+    if !has_files || folder(path) == own {
+        return Ok(());
     }
-    Ok(())
+    let own = if own.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        &own
+    };
+    Err(Failure::usage(format!(
+        "{}: the scene has meshes in files beside it: write the lean scene to the folder {}",
+        path.display(),
+        own.display()
+    )))
 }

@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use a3_core::Simulation;
+use a3_core::{Network, Simulation};
 use a3_files::bar::Bar;
 use a3_files::checkpoint::{Energy, Extremes, Kept};
 use a3_files::failure::Failure;
@@ -13,8 +13,7 @@ use a3_files::keeper::Keeper;
 use a3_files::output;
 use a3_files::setup::{Request, Run};
 use a3_files::{interrupt, progress, terminal, verdict};
-use a3_media::export;
-use a3_media::export::Export;
+use a3_media::export::{self, Export};
 use serde::Serialize;
 
 use crate::cli::Simulate;
@@ -319,17 +318,6 @@ struct Violation {
     off_by_percent: f64,
 }
 
-impl Violation {
-    fn of(simulation: &Simulation) -> Option<Self> {
-        let unmet = simulation.worst_constraint()?;
-        (unmet.share > MIN_REPORTED_ERROR).then(|| Self {
-            number: unmet.number,
-            name: unmet.constraint.to_string(),
-            off_by_percent: 100.0 * unmet.share,
-        })
-    }
-}
-
 /// Actions of the collision safeguard of surfaces.
 #[derive(Serialize)]
 struct Contact {
@@ -341,25 +329,6 @@ struct Contact {
     momentum_lost: f64,
 }
 
-impl Contact {
-    fn of(simulation: &Simulation) -> Option<Self> {
-        simulation.model().network()?.contact_layer()?;
-        let guarded = simulation.guarded();
-        Some(Self {
-            impulses: guarded.impulses,
-            cuts: guarded.cuts,
-            momentum_lost: guarded.lost,
-        })
-    }
-}
-
-/// Returns the mass (kg) of the liquid that has flowed out, if there is an outflow.
-fn flowed_out(simulation: &Simulation) -> Option<f64> {
-    let fluid = simulation.model().network()?.fluid()?;
-    let mass = fluid.members().drained().len() as f64 * fluid.law().mass();
-    (!fluid.members().outflows().is_empty()).then_some(mass)
-}
-
 /// Writes the summary of a run that began at the instant `begun` and has written `frames` frames:
 /// to a file, or for - to standard output.
 pub fn write(
@@ -369,6 +338,14 @@ pub fn write(
     extremes: &Extremes,
     begun: Instant,
 ) -> Result<(), Failure> {
+    let network = simulation.model().network();
+    let fluid = network.and_then(Network::fluid);
+    let fluid = fluid.filter(|fluid| !fluid.members().outflows().is_empty());
+    let unmet = simulation.worst_constraint();
+    let unmet = unmet.filter(|unmet| unmet.share > MIN_REPORTED_ERROR);
+    let guarded = network
+        .and_then(Network::contact_layer)
+        .map(|_| simulation.guarded());
     let summary = Summary {
         scene: simulation.scene().name.clone(),
         solver: simulation.method().name,
@@ -380,11 +357,19 @@ pub fn write(
         energy_gained: simulation.gained().map(|gain| gain.energy),
         energy_change_percent: simulation.energy_change().map(|share| 100.0 * share),
         start_changed_by: Some(simulation.scene().fitted).filter(|fitted| *fitted > 0.0),
-        constraint: Violation::of(simulation),
+        constraint: unmet.map(|unmet| Violation {
+            number: unmet.number,
+            name: unmet.constraint.to_string(),
+            off_by_percent: 100.0 * unmet.share,
+        }),
         largest_stretch: extremes.stretch,
         torn: simulation.tears(),
-        flowed_out: flowed_out(simulation),
-        contact: Contact::of(simulation),
+        flowed_out: fluid.map(|it| it.members().drained().len() as f64 * it.law().mass()),
+        contact: guarded.map(|guarded| Contact {
+            impulses: guarded.impulses,
+            cuts: guarded.cuts,
+            momentum_lost: guarded.lost,
+        }),
         wall_time: begun.elapsed().as_secs_f64(),
     };
     let text = serde_json::to_string_pretty(&summary).map_err(Failure::run)? + "\n";

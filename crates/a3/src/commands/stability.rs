@@ -1,14 +1,10 @@
 //! The command `a3 stability`: measures the limits, prints the table, and draws the chart.
 
-use std::path::PathBuf;
-
-use a3_core::Scene;
 use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_files::output;
 use a3_files::{interrupt, terminal};
 use a3_lab::chart::{Label, methods};
-use a3_lab::figure_file::PICTURES;
 use a3_lab::stability::measure;
 
 use super::picture;
@@ -20,7 +16,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let request = options.what.request()?;
     let scene = request.scene()?;
     let methods = methods(&scene, &options.solvers)?;
-    let path = check_outputs(options, &scene)?;
+    let path = picture::path(options.output.as_deref(), "stability", &scene)?;
+    if let Some(data) = &options.data {
+        output::check(data, &["json"])?;
+    }
     let label = Label::asked(request.options.on, &scene, scene.name.clone());
     let found = measure(&scene, &label, &methods, &Bar::new(1.0))?;
     interrupt::write_on();
@@ -34,24 +33,5 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if let Some(data) = &options.data {
         terminal::say(&format!("data: {}\n", data.display()))?;
     }
-    if interrupt::go_on() {
-        Ok(())
-    } else {
-        Err(Failure::Interrupted(
-            "interrupted: the chart has what was measured until then".into(),
-        ))
-    }
-}
-
-/// Checks that the output files can be written. Returns the path of the picture.
-fn check_outputs(options: &Options, scene: &Scene) -> Result<PathBuf, Failure> {
-    let picture = match &options.output {
-        Some(path) => path.clone(),
-        None => format!("a3-stability-{}.svg", output::part_of_name(&scene.name)).into(),
-    };
-    output::check(&picture, PICTURES)?;
-    if let Some(data) = &options.data {
-        output::check(data, &["json"])?;
-    }
-    Ok(picture)
+    picture::check_complete(interrupt::go_on())
 }

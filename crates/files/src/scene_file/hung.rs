@@ -7,6 +7,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use a3_core::Vector3;
 use a3_scenes::Mesh;
 
 use super::files::{MESH_ENDINGS, MeshReader, load_mesh};
@@ -40,20 +41,15 @@ pub fn scene(path: &Path) -> Result<String, String> {
     if mesh.tetrahedra.is_empty() {
         mesh = mesh.welded();
     }
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for point in &mesh.positions {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(point[axis]);
-            high[axis] = high[axis].max(point[axis]);
-        }
-    }
-    let size = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+    let whole = Part((0..mesh.positions.len()).collect());
+    let extents = [0, 1, 2].map(|axis| whole.extent(&mesh, axis));
+    let size = extents.map(|[low, high]| high - low);
     let longest = size.into_iter().fold(0.0, f64::max);
     let scale = SIDE / longest;
     if !(longest > 0.0 && scale.is_finite() && scale > 0.0) {
         return Err("the mesh has no size".into());
     }
-    let at = [0, 1, 2].map(|axis| 0.0 - 0.5 * scale * (low[axis] + high[axis]));
+    let at = extents.map(|[low, high]| 0.0 - 0.5 * scale * (low + high));
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let hanging = hang(&mesh);
     if hanging.held < hanging.parts {
@@ -114,8 +110,7 @@ fn stiffness(hanging: &Hanging, scale: f64) -> f64 {
         let weight = CLOTH_DENSITY * GRAVITY * neck.size * scale.powi(2);
         weight / (STRAIN * neck.edges * neck.length * scale)
     };
-    let needed = hanging.necks.iter().map(needed).fold(0.0, f64::max);
-    round_up(needed.clamp(120.0, 1e6), MANY)
+    largest(hanging, needed, [120.0, 1e6])
 }
 
 /// Returns Young's modulus (Pa) of a solid, chosen in the same way.
@@ -126,8 +121,13 @@ fn young(hanging: &Hanging, scale: f64) -> f64 {
         let area = neck.edges * (0.5 * neck.length * scale).powi(2);
         weight / (STRAIN * area)
     };
+    largest(hanging, needed, [1e5, 1e8])
+}
+
+/// Returns the largest of what the necks need, within bounds, as a round number.
+fn largest(hanging: &Hanging, needed: impl Fn(&Neck) -> f64, [least, most]: [f64; 2]) -> f64 {
     let needed = hanging.necks.iter().map(needed).fold(0.0, f64::max);
-    round_up(needed.clamp(1e5, 1e8), MANY)
+    round_up(needed.clamp(least, most), MANY)
 }
 
 /// Writes the key of a camera that sees the whole fall of the mesh; an empty text if the mesh does
@@ -246,26 +246,18 @@ impl Part {
         let end = |axis: usize, is_high: bool| {
             let [low, high] = self.extent(mesh, axis);
             let (at, near) = (
-                if is_high { high } else { low },
+                [low, high][usize::from(is_high)],
                 PIN_DISTANCE * (high - low),
             );
-            let there = self
-                .0
-                .iter()
-                .filter(|i| (mesh.positions[**i][axis] - at).abs() <= near);
+            let is_there = |i: &&usize| (mesh.positions[**i][axis] - at).abs() <= near;
+            let there = self.0.iter().filter(is_there);
             there.copied().collect::<Vec<_>>()
         };
         let is_level = size[1] <= MAX_LEVEL_HEIGHT * longest;
         let mut held = if is_level {
             // The edge at the back, or one at the side if the part has no depth.
-            end(
-                if size[2] > MAX_LEVEL_HEIGHT * longest {
-                    2
-                } else {
-                    0
-                },
-                false,
-            )
+            let has_depth = size[2] > MAX_LEVEL_HEIGHT * longest;
+            end(if has_depth { 2 } else { 0 }, false)
         } else {
             end(1, true)
         };
@@ -321,29 +313,22 @@ fn necks(mesh: &Mesh, parts: &[Part], is_pinned: &[bool]) -> Vec<Neck> {
     for (k, part) in parts.iter().enumerate() {
         part.0.iter().for_each(|i| part_of[*i] = k);
     }
-    let at = |i: u32| mesh.positions[i as usize];
-    let minus = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k] - b[k]);
-    let cross = |a: [f64; 3], b: [f64; 3]| {
-        [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
+    let at = |i: u32| Vector3::from(mesh.positions[i as usize]);
+    let neck = |_| Neck {
+        size: 0.0,
+        edges: 0.0,
+        length: 0.0,
     };
-    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let mut necks: Vec<_> = parts
-        .iter()
-        .map(|_| Neck {
-            size: 0.0,
-            edges: 0.0,
-            length: 0.0,
-        })
-        .collect();
+    let mut necks: Vec<_> = parts.iter().map(neck).collect();
     for &[a, b, c, d] in &mesh.tetrahedra {
-        let sides = [b, c, d].map(|i| minus(at(i), at(a)));
-        let volume = dot(cross(sides[0], sides[1]), sides[2]).abs() / 6.0;
+        let [u, v, w] = [b, c, d].map(|i| at(i) - at(a));
+        let volume = u.cross(&v).dot(&w).abs() / 6.0;
         necks[part_of[a as usize]].size += volume;
     }
     if mesh.tetrahedra.is_empty() {
         for &[a, b, c] in &mesh.triangles {
-            let normal = cross(minus(at(b), at(a)), minus(at(c), at(a)));
-            necks[part_of[a as usize]].size += 0.5 * dot(normal, normal).sqrt();
+            let normal = (at(b) - at(a)).cross(&(at(c) - at(a)));
+            necks[part_of[a as usize]].size += 0.5 * normal.norm();
         }
     }
     let between =
@@ -351,9 +336,8 @@ fn necks(mesh: &Mesh, parts: &[Part], is_pinned: &[bool]) -> Vec<Neck> {
     let between: BTreeSet<_> = between.map(|[a, b]| [a.min(b), a.max(b)]).collect();
     for [a, b] in between {
         let neck = &mut necks[part_of[a as usize]];
-        let along = minus(at(b), at(a));
         neck.edges += 1.0;
-        neck.length += dot(along, along).sqrt();
+        neck.length += (at(b) - at(a)).norm();
     }
     necks.retain(|neck| neck.edges > 0.0);
     for neck in &mut necks {

@@ -52,10 +52,8 @@ impl Source {
             });
         }
         let path = Path::new(typed);
-        let extension = path
-            .extension()
-            .and_then(|e| e.to_str())
-            .map(str::to_lowercase);
+        let extension = path.extension().and_then(|e| e.to_str());
+        let extension = extension.map(str::to_lowercase);
         let wrong = |file: &str, why: String| InputError::File {
             file: file.into(),
             why,
@@ -95,17 +93,15 @@ impl Source {
             let is_input = typed == INPUT;
             description.name = Some(if is_input { "input" } else { &*stem }.into());
         }
+        let places = if is_written {
+            places
+        } else {
+            places.without_lines()
+        };
         Ok(Self {
             typed: typed.into(),
             path: Some(path.into()),
-            description: Arc::new(description),
-            text: text.into(),
-            places: Arc::new(if is_written {
-                places
-            } else {
-                places.without_lines()
-            }),
-            meshes: Arc::default(),
+            ..Self::of_text(text, description, places)
         })
     }
 
@@ -134,22 +130,13 @@ impl Source {
     /// Reads a scene from the table of its keys, as JSON.
     pub fn tabulated(json: &str) -> Result<Self, InputError> {
         let whole = |why: String| {
-            let key = String::new();
-            in_text(Fault {
-                line: None,
-                key,
-                why,
-            })
+            let (line, key) = (None, String::new());
+            in_text(Fault { line, key, why })
         };
         let table: Value = serde_json::from_str(json).map_err(|e| whole(e.to_string()))?;
         let text = toml::to_string(&table).map_err(|e| whole(e.to_string()))?;
         // The lines of this text mean nothing to the user.
-        let parsed = parse_toml(&text).map_err(|fault| {
-            in_text(Fault {
-                line: None,
-                ..fault
-            })
-        });
+        let parsed = parse_toml(&text).map_err(|fault| in_text(unplaced(fault)));
         let (description, places) = parsed?;
         Ok(Self::of_text(text, description, places.without_lines()))
     }
@@ -208,11 +195,8 @@ impl Source {
             (text.clone(), parse_toml(&text))
         };
         // The program wrote this text, so its lines mean nothing to the user.
-        let parsed = parsed.map_err(|fault| Fault {
-            line: None,
-            ..fault
-        });
-        let (mut description, places) = parsed.map_err(|fault| fault.to_string())?;
+        let parsed = parsed.map_err(|fault| unplaced(fault).to_string());
+        let (mut description, places) = parsed?;
         if description.name.is_none() {
             description.name.clone_from(&self.description.name);
         }
@@ -293,6 +277,14 @@ impl Source {
 /// Returns the name of a file in messages.
 fn said(typed: &str) -> String {
     if typed == INPUT { INPUT_NAME } else { typed }.into()
+}
+
+/// Returns a fault without its line.
+fn unplaced(fault: Fault) -> Fault {
+    Fault {
+        line: None,
+        ..fault
+    }
 }
 
 /// Returns the fault of a text that is in no file.

@@ -62,7 +62,7 @@ impl Digits {
 
 /// States of particles at increasing times. Matrices of positions and velocities are n x 3,
 /// column-major: all x, all y, all z.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct States {
     /// Times (s), increasing.
     pub times: Vec<f64>,
@@ -78,63 +78,43 @@ pub struct States {
     pub digits: [Digits; 2],
 }
 
-/// States as a file has them.
-#[derive(Default)]
-pub struct Raw {
-    pub times: Vec<f64>,
-    pub positions: Vec<Vec<f64>>,
-    /// Empty if there are none.
-    pub velocities: Vec<Vec<f64>>,
-    pub seconds: Option<f64>,
-    /// Digits of the times and of the positions.
-    pub digits: [Digits; 2],
-}
-
 impl States {
-    /// Checks states of that many particles.
+    /// Checks states of that many particles, as a file has them, and leaves out those that are not
+    /// finite.
     ///
     /// # Errors
     /// There are no states, the times do not increase from 0 on, a number of particles is wrong, or
     /// the first state has numbers that are not finite.
-    pub fn new(raw: Raw, particles: usize) -> Result<Self, String> {
-        let Raw {
-            mut times,
-            mut positions,
-            mut velocities,
-            seconds,
-            digits,
-        } = raw;
+    pub fn checked(mut self, particles: usize) -> Result<Self, String> {
+        let times = &self.times;
         if times.is_empty() {
             return Err("it has no states".into());
         }
-        check_counts(&times, "positions", &positions, particles)?;
-        if !velocities.is_empty() {
-            check_counts(&times, "velocities", &velocities, particles)?;
+        check_counts(times, "positions", &self.positions, particles)?;
+        if let Some(velocities) = &self.velocities {
+            check_counts(times, "velocities", velocities, particles)?;
         }
-        check_times(&times)?;
-        let is_finite =
-            |row: Option<&Vec<f64>>| row.is_none_or(|row| row.iter().all(|x| x.is_finite()));
-        let finite = (0..times.len())
-            .take_while(|k| is_finite(positions.get(*k)) && is_finite(velocities.get(*k)))
-            .count();
+        check_times(times)?;
+        let is_finite = |k: &usize| {
+            let velocities = self.velocities.iter().flat_map(|rows| &rows[*k]);
+            let mut all = self.positions[*k].iter().chain(velocities);
+            all.all(|x| x.is_finite())
+        };
+        let finite = (0..times.len()).take_while(is_finite).count();
         if finite == 0 {
             return Err("its first state has numbers that are not finite".into());
         }
-        let not_finite_at = times.get(finite).copied();
-        times.truncate(finite);
-        positions.truncate(finite);
-        velocities.truncate(finite);
-        if seconds.is_some_and(|seconds| !(seconds > 0.0 && seconds.is_finite())) {
+        self.not_finite_at = times.get(finite).copied();
+        self.times.truncate(finite);
+        self.positions.truncate(finite);
+        if let Some(velocities) = &mut self.velocities {
+            velocities.truncate(finite);
+        }
+        let is_wrong = |seconds: f64| !(seconds > 0.0 && seconds.is_finite());
+        if self.seconds.is_some_and(is_wrong) {
             return Err("its computing time is no number of seconds above 0".into());
         }
-        Ok(Self {
-            digits,
-            times,
-            positions,
-            velocities: Some(velocities).filter(|rows| !rows.is_empty()),
-            seconds,
-            not_finite_at,
-        })
+        Ok(self)
     }
 }
 

@@ -1,7 +1,7 @@
 //! CSV: a row for each time, with columns for each particle; or a row for each time and particle.
 //! Columns are found by their names.
 
-use super::build::Raw;
+use super::build::States;
 
 /// Names that are understood.
 const NAMES: &str = "t or time, and x, y, z in rows of one particle each, or x0, y0, z0, x1, ... in a row for each \
@@ -14,7 +14,7 @@ const SEPARATORS: [char; 3] = [',', ';', '\t'];
 ///
 /// # Errors
 /// The first line has no names that are understood, or a row does not fit: with its line.
-pub fn read(text: &str, particles: usize) -> Result<Raw, String> {
+pub fn read(text: &str, particles: usize) -> Result<States, String> {
     let lines = text
         .lines()
         .enumerate()
@@ -26,7 +26,7 @@ pub fn read(text: &str, particles: usize) -> Result<Raw, String> {
     let separator = SEPARATORS.into_iter().find(|c| head.contains(*c));
     let columns: Vec<_> = split(head, separator).map(Column::of).collect();
     let mut layout = Layout::of(&columns, particles)?;
-    let mut raw = Raw::default();
+    let mut raw = States::default();
     // Rows of one particle each, of the time at the end.
     let mut seen: Vec<bool> = vec![];
     for (line, row) in lines.filter(|(_, line)| !line.starts_with('#')) {
@@ -52,7 +52,8 @@ pub fn read(text: &str, particles: usize) -> Result<Raw, String> {
             raw.times.push(time);
             raw.positions.push(vec![0.0; 3 * particles]);
             if layout.velocities {
-                raw.velocities.push(vec![0.0; 3 * particles]);
+                let velocities = raw.velocities.get_or_insert_default();
+                velocities.push(vec![0.0; 3 * particles]);
             }
         }
         if let Some(seconds) = row.cell(Column::Seconds).filter(|cell| !cell.is_empty()) {
@@ -74,12 +75,12 @@ pub fn read(text: &str, particles: usize) -> Result<Raw, String> {
             };
             let i = own.unwrap_or_else(|| particle.unwrap_or_default() - layout.first);
             let rows = if velocity {
-                &mut raw.velocities
+                raw.velocities.as_mut()
             } else {
                 raw.digits[1].add(cell);
-                &mut raw.positions
+                Some(&mut raw.positions)
             };
-            if let Some(row) = rows.last_mut() {
+            if let Some(row) = rows.and_then(|rows| rows.last_mut()) {
                 row[axis * particles + i] = number(cell).map_err(wrong)?;
             }
         }
@@ -223,7 +224,7 @@ impl Layout {
     }
 
     /// Returns the particle of a row, which is marked as seen.
-    fn particle(&mut self, row: &Row, raw: &Raw, seen: &mut [bool]) -> Result<usize, String> {
+    fn particle(&mut self, row: &Row, raw: &States, seen: &mut [bool]) -> Result<usize, String> {
         let there = seen.iter().filter(|seen| **seen).count();
         let mut number = there;
         if self.numbered {
@@ -252,7 +253,7 @@ impl Layout {
     }
 
     /// Checks that all particles are there at the last time.
-    fn check_group(&self, seen: &[bool], raw: &Raw) -> Result<(), String> {
+    fn check_group(&self, seen: &[bool], raw: &States) -> Result<(), String> {
         let there = seen.iter().filter(|seen| **seen).count();
         match raw.times.last() {
             Some(t) if there != self.particles => Err(format!(

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
-use super::build::Raw;
+use super::build::States;
 
 /// States, or one state, as a file has them.
 #[derive(Deserialize)]
@@ -28,7 +28,7 @@ type Vectors = Vec<[Option<f64>; 3]>;
 ///
 /// # Errors
 /// The text is not JSON, or a key is missing or holds something else.
-pub fn read(text: &str) -> Result<Raw, String> {
+pub fn read(text: &str) -> Result<States, String> {
     // Python writes numbers that are not finite as these words.
     let mut text = Cow::Borrowed(text);
     for word in ["-Infinity", "Infinity", "NaN"] {
@@ -36,7 +36,7 @@ pub fn read(text: &str) -> Result<Raw, String> {
             text = text.replace(word, "null").into();
         }
     }
-    let mut raw = Raw::default();
+    let mut raw = States::default();
     if text.trim_start().starts_with('[') {
         let records: Vec<Record> = parsed(&text, "list of states")?;
         for (k, record) in records.iter().enumerate() {
@@ -56,13 +56,14 @@ pub fn read(text: &str) -> Result<Raw, String> {
     let rows = |all: Vec<Vectors>| all.iter().map(columns).collect();
     raw.positions = rows(parsed(record.x.get(), "x")?);
     if let Some(v) = record.v.filter(|v| v.get() != "null") {
-        raw.velocities = rows(parsed(v.get(), "v")?);
+        let velocities: Vec<_> = rows(parsed(v.get(), "v")?);
+        raw.velocities = Some(velocities).filter(|rows| !rows.is_empty());
     }
     Ok(raw)
 }
 
 /// Adds one state.
-fn add_state(raw: &mut Raw, record: &Record) -> Result<(), String> {
+fn add_state(raw: &mut States, record: &Record) -> Result<(), String> {
     let time: f64 = parsed(record.t.get(), "time")?;
     raw.times.push(time);
     raw.digits[0].add_all(record.t.get());
@@ -70,8 +71,8 @@ fn add_state(raw: &mut Raw, record: &Record) -> Result<(), String> {
     raw.positions
         .push(columns(&parsed(record.x.get(), "positions")?));
     if let Some(v) = record.v.filter(|v| v.get() != "null") {
-        raw.velocities
-            .push(columns(&parsed(v.get(), "velocities")?));
+        let velocities = raw.velocities.get_or_insert_default();
+        velocities.push(columns(&parsed(v.get(), "velocities")?));
     }
     raw.seconds = record.seconds.or(raw.seconds);
     Ok(())

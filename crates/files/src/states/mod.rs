@@ -54,5 +54,5 @@ pub fn parse(bytes: &[u8], ending: &str, particles: usize) -> Result<States, Str
         "json" => json::read(text()?)?,
         _ => csv::read(text()?, particles)?,
     };
-    States::new(raw, particles)
+    raw.checked(particles)
 }

@@ -6,7 +6,7 @@ use std::io::{Cursor, Read};
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use super::build::{Digits, Raw};
+use super::build::{Digits, States};
 
 /// Largest size of the arrays that are unpacked, together (bytes).
 const MAX_SIZE: u64 = 256 << 20;
@@ -17,7 +17,7 @@ const MAX_HEADER: usize = 1 << 16;
 ///
 /// # Errors
 /// The bytes are no archive, or an array is missing, or has another shape.
-pub fn read(bytes: &[u8]) -> Result<Raw, String> {
+pub fn read(bytes: &[u8]) -> Result<States, String> {
     let archive = ZipArchive::new(Cursor::new(bytes));
     let mut archive = archive.map_err(|e| format!("it is no archive of NumPy arrays: {e}"))?;
     let mut left = MAX_SIZE;
@@ -45,12 +45,17 @@ pub fn read(bytes: &[u8]) -> Result<Raw, String> {
             times.shape
         ));
     }
-    Ok(Raw {
+    let digits = [&times, &positions].map(|array| Digits::binary(array.share));
+    let positions = rows("positions", &positions, &times)?;
+    let velocities = velocities.map(|array| rows("velocities", &array, &times));
+    let velocities = velocities.transpose()?;
+    Ok(States {
         seconds,
-        digits: [&times, &positions].map(|array| Digits::binary(array.share)),
-        positions: rows("positions", &positions, &times)?,
-        velocities: velocities.map_or(Ok(vec![]), |array| rows("velocities", &array, &times))?,
+        digits,
+        positions,
+        velocities: velocities.filter(|rows| !rows.is_empty()),
         times: times.numbers,
+        not_finite_at: None,
     })
 }
 
@@ -143,20 +148,15 @@ fn read_array(bytes: &[u8]) -> Result<Array, String> {
     let count = shape
         .iter()
         .try_fold(1usize, |count, n| count.checked_mul(*n));
-    let (size, number): (usize, fn(&[u8]) -> f64) =
+    let (size, number): (usize, fn([u8; 8]) -> f64) =
         match kind.trim_start_matches(['<', '>', '=', '|']) {
-            "f8" => (8, |b| b.try_into().map_or(f64::NAN, f64::from_le_bytes)),
-            "f4" => (4, |b| {
-                b.try_into()
-                    .map_or(f64::NAN, |b| f32::from_le_bytes(b).into())
+            "f8" => (8, f64::from_le_bytes),
+            "f4" => (4, |[a, b, c, d, ..]| {
+                f32::from_le_bytes([a, b, c, d]).into()
             }),
-            "i8" => (8, |b| {
-                b.try_into()
-                    .map_or(f64::NAN, |b| i64::from_le_bytes(b) as f64)
-            }),
-            "i4" => (4, |b| {
-                b.try_into()
-                    .map_or(f64::NAN, |b| i32::from_le_bytes(b).into())
+            "i8" => (8, |bytes| i64::from_le_bytes(bytes) as f64),
+            "i4" => (4, |[a, b, c, d, ..]| {
+                i32::from_le_bytes([a, b, c, d]).into()
             }),
             _ => {
                 return Err(format!(
@@ -164,21 +164,16 @@ fn read_array(bytes: &[u8]) -> Result<Array, String> {
                 ));
             }
         };
-    let fits = |count: &usize| {
-        count
-            .checked_mul(size)
-            .is_some_and(|bytes| bytes <= data.len())
-    };
-    let count = count
-        .filter(fits)
-        .ok_or("it has fewer numbers than its shape says")?;
+    let is_there = |bytes| bytes <= data.len();
+    let fits = |count: &usize| count.checked_mul(size).is_some_and(is_there);
+    let few = "it has fewer numbers than its shape says";
+    let count = count.filter(fits).ok_or(few)?;
     let big = kind.starts_with('>');
     let numbers = data.chunks_exact(size).take(count).map(|chunk| {
         let mut bytes = [0; 8];
-        let bytes = &mut bytes[..size];
-        bytes.copy_from_slice(chunk);
+        bytes[..size].copy_from_slice(chunk);
         if big {
-            bytes.reverse();
+            bytes[..size].reverse();
         }
         number(bytes)
     });

@@ -6,17 +6,15 @@
 use std::time::{Duration, Instant};
 
 use a3_core::accuracy::{
-    Errors, Frames, GoOn, Metric, Outcome, Precision, Reference, Scope, coarser, ladder,
+    Frames, GoOn, Metric, Outcome, Precision, Reference, Scope, coarser, ladder,
 };
 use a3_core::stability::{Mode, largest_step, spectrum};
 use a3_core::{Control, Method, Model, Scene, Simulation, accuracy};
 use a3_files::failure::Failure;
 use a3_files::monitor::Monitor;
 
-use super::asked::check_contact;
-use super::data::{Data, VERSION};
-use super::record::Record;
-use super::words::Label;
+use super::asked::{Label, check_contact};
+use super::record::{Data, Record, VERSION};
 use crate::motion::words;
 
 /// Largest work of a run, in evaluations. A run that blows up may take more.
@@ -48,6 +46,18 @@ pub struct Study {
     metric: Metric,
     /// Measurements besides errors and work.
     measured: Measured,
+}
+
+/// Runs of methods on a scene at smaller and smaller steps or tolerances, with their errors against
+/// a reference, and their costs.
+pub struct Chart {
+    pub(crate) studies: Vec<Study>,
+    pub(crate) data: Data,
+    pub(crate) methods: Vec<&'static Method>,
+    pub(crate) metric: Metric,
+    pub(crate) timed: bool,
+    pub(crate) title: String,
+    pub(crate) complete: bool,
 }
 
 /// Measurements of runs besides their errors and their work.
@@ -170,9 +180,11 @@ impl Study {
         steps * each(method) + 100.0
     }
 
-    /// Measures the runs that the data do not have yet. Returns `false` if the monitor
-    /// stopped it.
-    pub fn run(&mut self, data: &mut Data, monitor: &dyn Monitor) -> Result<bool, Failure> {
+    /// Measures the runs that the data do not have yet.
+    ///
+    /// # Errors
+    /// A run fails, or the monitor stopped it: [`Failure::Interrupted`].
+    pub fn run(&mut self, data: &mut Data, monitor: &dyn Monitor) -> Result<(), Failure> {
         for method in self.methods.clone() {
             let (rungs, max_work) = (self.rungs(method)?, self.max_work(method)?);
             if rungs.is_empty() {
@@ -181,18 +193,12 @@ impl Study {
             let mut coarser_run: Option<Record> = None;
             for (i, &control) in rungs.iter().enumerate() {
                 let like = self.like(method, control);
-                let Some(record) =
-                    self.record(method, like, coarser_run.as_ref(), data, monitor)?
-                else {
-                    return Ok(false);
-                };
+                let record = self.record(method, like, coarser_run.as_ref(), data, monitor)?;
                 if record.given_up {
                     self.too_costly.push(method);
                     break;
                 }
-                if !self.look_beside(method, control, &record, data, monitor)? {
-                    return Ok(false);
-                }
+                self.look_beside(method, control, &record, data, monitor)?;
                 coarser_run = Some(record.clone());
                 // The ladder begins just beyond the stability limit at the start of the motion.
                 // Later, longer steps may be stable too.
@@ -203,21 +209,17 @@ impl Study {
                     && let Some(longer) = coarser(longest.0, &self.frames)
                 {
                     let like = self.like(method, longer);
-                    let Some(record) = self.record(method, like, None, data, monitor)? else {
-                        return Ok(false);
-                    };
-                    longest = (longer, record);
+                    longest = (longer, self.record(method, like, None, data, monitor)?);
                 }
                 monitor.advance(self.expected_of(method, control));
                 // Errors that the reference cannot tell from 0 end the ladder, and so does too much
                 // work: that of linear algebra is known only after a run.
                 let enough = record.resolved(self.metric).max(1e-12);
-                let next = rungs
-                    .get(i + 1)
-                    .map_or(1.0, |next| control.value() / next.value());
+                let next = rungs.get(i + 1);
+                let next = next.map_or(1.0, |next| control.value() / next.value());
                 let is_expensive = control.step().is_some() && record.work * next > max_work;
-                if record.lost_at.is_none() && (record.error(self.metric) < enough || is_expensive)
-                {
+                let is_enough = is_expensive || record.error(self.metric) < enough;
+                if record.lost_at.is_none() && is_enough {
                     let rest = rungs[i + 1..].iter();
                     monitor.advance(rest.map(|s| self.expected_of(method, *s)).sum());
                     break;
@@ -225,11 +227,10 @@ impl Study {
             }
             data.runs.save()?;
         }
-        Ok(true)
+        Ok(())
     }
 
-    /// Measures the runs at the neighbours of a tolerance, if they were asked for. Returns `false`
-    /// if the command was stopped.
+    /// Measures the runs at the neighbours of a tolerance, if they were asked for.
     fn look_beside(
         &mut self,
         method: &'static Method,
@@ -237,23 +238,19 @@ impl Study {
         record: &Record,
         data: &mut Data,
         monitor: &dyn Monitor,
-    ) -> Result<bool, Failure> {
-        let Some(tolerance) = control.tolerance() else {
-            return Ok(true);
+    ) -> Result<(), Failure> {
+        let is_wanted = self.measured.spread && record.lost_at.is_none();
+        let Some(tolerance) = control.tolerance().filter(|_| is_wanted) else {
+            return Ok(());
         };
-        if record.lost_at.is_some() || !self.measured.spread {
-            return Ok(true);
-        }
         for factor in NEIGHBOURS {
             let like = Record {
                 beside: Some(tolerance),
                 ..self.like(method, Control::Tolerance(factor * tolerance))
             };
-            if self.record(method, like, None, data, monitor)?.is_none() {
-                return Ok(false);
-            }
+            self.record(method, like, None, data, monitor)?;
         }
-        Ok(true)
+        Ok(())
     }
 
     /// Creates the record of a run that is not measured yet: its scene, method and setting.
@@ -266,8 +263,7 @@ impl Study {
     }
 
     /// Returns the run of a method with the setting of `like`. A run that the data do not have yet
-    /// is measured and added, with the order between it and a coarser run. `None` if the command
-    /// was stopped.
+    /// is measured and added, with the order between it and a coarser run.
     fn record(
         &mut self,
         method: &'static Method,
@@ -275,103 +271,79 @@ impl Study {
         coarser_run: Option<&Record>,
         data: &mut Data,
         monitor: &dyn Monitor,
-    ) -> Result<Option<Record>, Failure> {
+    ) -> Result<Record, Failure> {
         monitor.stage(method.name);
         let timed = self.measured.timed && like.beside.is_none();
-        let known = data.find(&like, timed).cloned();
-        let known = known.filter(|_| data.each.is_none());
-        let is_new = known.is_none();
+        let known = data.find(&like, timed).filter(|_| data.each.is_none());
+        let (known, is_new) = (known.cloned(), known.is_none());
         let record = match known {
-            Some(known) => Some(known),
-            None => self
-                .measure(method, like, data, monitor)?
-                .map(|record| Record {
-                    order: coarser_run.and_then(|run| record.order_from(run, method.is_adaptive())),
-                    ..record
-                }),
+            Some(known) => known,
+            None => self.measure(method, like, data, monitor)?,
         };
-        if let Some(record) = &record {
-            check_contact(self.metric, record.still(self.metric), record.until)?;
-            if is_new && !record.given_up {
-                data.runs.add(record.clone());
-            }
+        let order = |run| record.order_from(run, method.is_adaptive());
+        let order = if is_new {
+            coarser_run.and_then(order)
+        } else {
+            record.order
+        };
+        let record = Record { order, ..record };
+        check_contact(self.metric, record.still(self.metric), record.until)?;
+        if is_new && !record.given_up {
+            data.runs.add(record.clone());
         }
         Ok(record)
     }
 
-    /// Measures one run, and the reference before the first. `None` if the command was stopped.
+    /// Measures one run, and the reference before the first.
     fn measure(
         &mut self,
         method: &'static Method,
         like: Record,
         data: &mut Data,
         monitor: &dyn Monitor,
-    ) -> Result<Option<Record>, Failure> {
-        let go_on = &|| monitor.go_on();
+    ) -> Result<Record, Failure> {
+        let (go_on, scene) = (&|| monitor.go_on(), &self.scene);
         if self.reference.is_none() {
             monitor.stage("reference");
-            let precision = precision(&self.scene, self.motion);
-            self.reference = reference(go_on, &self.scene, self.frames, self.scope, precision)?;
+            let precision = precision(scene, self.motion);
+            let made = reference(go_on, scene, self.frames, self.scope, precision);
+            self.reference = Some(made?);
             monitor.start();
             monitor.stage(method.name);
         }
-        let Some(reference) = &mut self.reference else {
-            return Ok(None);
-        };
+        let reference = self.reference.as_mut().ok_or_else(Failure::stopped)?;
         let most = reference.max_work;
-        if !(method.is_implicit() || method.is_own()) {
-            reference.max_work = explicit_work(reference);
+        if !(method.is_implicit() || method.is_own()) && reference.is_stiff {
+            // Runs of explicit methods take alike to any tolerance.
+            reference.max_work = MAX_EVALUATIONS.min(most);
         }
         let timed = self.measured.timed && like.beside.is_none();
         let mut coordinates = match (&data.each, like.beside) {
-            (Some(_), None) => vec![0.0; 3 * self.scene.model.particles()],
+            (Some(_), None) => vec![0.0; 3 * scene.model.particles()],
             _ => vec![],
         };
-        let found = compared(
-            like,
-            &self.scene,
-            method,
-            reference,
-            &mut coordinates,
-            go_on,
-        );
+        let found = compared(like, scene, method, reference, &mut coordinates, go_on);
         reference.max_work = most;
-        let Some((record, once)) = found? else {
-            return Ok(None);
-        };
+        let (record, once) = found?;
         if let Some(each) = data.each.as_mut().filter(|_| record.lost_at.is_none()) {
             each.add(&record, &coordinates)?;
         }
-        let seconds = if timed && method.is_foreign() {
-            Some(once.as_secs_f64())
-        } else if timed && record.lost_at.is_none() {
-            let control = method.control(record.setting);
-            let timed = time(
+        let control = method.control(record.setting);
+        let seconds = match record.lost_at {
+            _ if !timed => None,
+            _ if method.is_foreign() => Some(once),
+            Some(_) => None,
+            None => Some(time(
                 go_on,
-                &self.scene,
+                scene,
                 method,
                 control,
                 &self.frames,
                 Some(once),
-            )?;
-            let Some(time) = timed else {
-                return Ok(None);
-            };
-            Some(time.as_secs_f64())
-        } else {
-            None
+            )?),
         };
-        Ok(Some(Record { seconds, ..record }))
-    }
-}
-
-/// Returns the largest work of a run of an explicit method, in evaluations: little where the system
-/// is stiff, because such runs take alike to any tolerance.
-fn explicit_work(reference: &Reference) -> f64 {
-    if reference.is_stiff {
-        MAX_EVALUATIONS.min(reference.max_work)
-    } else {
-        reference.max_work
+        let seconds = seconds.map(|seconds| seconds.as_secs_f64());
+        Ok(Record { seconds, ..record })
     }
 }
 
@@ -422,8 +394,11 @@ const MAX_TOTAL: Duration = Duration::from_millis(20);
 const MAX_SINGLE: Duration = Duration::from_millis(50);
 
 /// Runs a method with the setting of `like`, and compares the run with the reference of its scene.
-/// Returns its record and its computing time; `None` if `go_on` returned false. `coordinates`
-/// receives the largest error of each coordinate (m), n x 3, unless it is empty.
+/// Returns its record and its computing time. `coordinates` receives the largest error of each
+/// coordinate (m), n x 3, unless it is empty.
+///
+/// # Errors
+/// The run fails, or `go_on` returned false.
 pub fn compared(
     like: Record,
     scene: &Scene,
@@ -431,7 +406,7 @@ pub fn compared(
     reference: &Reference,
     coordinates: &mut [f64],
     go_on: GoOn,
-) -> Result<Option<(Record, Duration)>, Failure> {
+) -> Result<(Record, Duration), Failure> {
     let (control, begun) = (method.control(like.setting), Instant::now());
     let clock = || begun.elapsed();
     let outcome = accuracy::measure_by(
@@ -442,40 +417,28 @@ pub fn compared(
         reference,
         coordinates,
         go_on,
-    )
-    .map_err(Failure::run)?;
-    let given_up = outcome.is_some_and(|outcome| outcome.is_too_costly());
-    let Some(Outcome {
+    );
+    let outcome = outcome
+        .map_err(Failure::run)?
+        .ok_or_else(Failure::stopped)?;
+    let Outcome {
         errors,
         work,
         guarded,
         lost,
         time,
-    }) = outcome
-    else {
-        return Ok(None);
-    };
-    let Errors {
-        position,
-        state,
-        energy,
-        strain,
-        momentum,
-        phase,
-        penetration,
-        impact,
-    } = errors;
+    } = outcome;
     let (floor, still) = (reference.floor, reference.still);
     let of = |error: f64| Some(error).filter(|_| lost.is_none());
     let record = Record {
-        error_position: of(position),
-        error_energy: of(energy),
-        error_strain: of(strain),
-        error_momentum: of(momentum),
-        error_phase: of(phase),
-        error_penetration: of(penetration),
-        error_impact: of(impact),
-        error_state: of(state),
+        error_position: of(errors.position),
+        error_energy: of(errors.energy),
+        error_strain: of(errors.strain),
+        error_momentum: of(errors.momentum),
+        error_phase: of(errors.phase),
+        error_penetration: of(errors.penetration),
+        error_impact: of(errors.impact),
+        error_state: of(errors.state),
         floor_position: floor.position,
         floor_energy: floor.energy,
         floor_strain: floor.strain,
@@ -490,7 +453,7 @@ pub fn compared(
         still_impact: still.impact,
         still_state: still.state,
         lost_at: lost.map(|lost| lost.time),
-        given_up,
+        given_up: outcome.is_too_costly(),
         guard_impulses: guarded.impulses,
         guard_cuts: guarded.cuts,
         guard_lost: guarded.lost,
@@ -502,7 +465,7 @@ pub fn compared(
         rejections: work.rejections,
         ..like
     };
-    Ok(Some((record, time)))
+    Ok((record, time))
 }
 
 /// Returns the precision of a reference for all errors that a chart may show. `motion` is the
@@ -528,28 +491,31 @@ pub fn precision(scene: &Scene, motion: f64) -> Precision {
     }
 }
 
-/// Computes the reference of a scene from its start. `None` if `go_on` returned false.
+/// Computes the reference of a scene from its start.
+///
+/// # Errors
+/// It blows up, or `go_on` returned false.
 pub fn reference(
     go_on: GoOn,
     scene: &Scene,
     frames: Frames,
     scope: Scope,
     precision: Precision,
-) -> Result<Option<Reference>, Failure> {
+) -> Result<Reference, Failure> {
     let made = Reference::new(scene, frames, scope, precision, go_on);
-    let made =
-        made.map_err(|e| Failure::run(format!("the reference could not be computed: {e}")))?;
-    let is_own = scene.model.network().is_none();
-    Ok(made.map(|mut reference| {
-        if is_own {
-            reference.max_work = MAX_OWN_EVALUATIONS.max(reference.work.total());
-        }
-        reference
-    }))
+    let failed = |e| Failure::run(format!("the reference could not be computed: {e}"));
+    let mut reference = made.map_err(failed)?.ok_or_else(Failure::stopped)?;
+    if scene.model.network().is_none() {
+        reference.max_work = MAX_OWN_EVALUATIONS.max(reference.work.total());
+    }
+    Ok(reference)
 }
 
 /// Measures the computing time of a run: the shortest of several, including `before` if it is
-/// given. `None` if `go_on` returned false.
+/// given.
+///
+/// # Errors
+/// The run fails, or `go_on` returned false.
 pub fn time(
     go_on: GoOn,
     scene: &Scene,
@@ -557,7 +523,7 @@ pub fn time(
     control: Control,
     frames: &Frames,
     before: Option<Duration>,
-) -> Result<Option<Duration>, Failure> {
+) -> Result<Duration, Failure> {
     let (mut best, mut sum) = (before.unwrap_or(Duration::MAX), before.unwrap_or_default());
     for runs in u32::from(before.is_some())..MAX_TIMINGS {
         if runs > 0 && sum > if runs == 1 { MAX_SINGLE } else { MAX_TOTAL } {
@@ -567,11 +533,9 @@ pub fn time(
         let begun = Instant::now();
         let end = accuracy::run(&mut run, frames, go_on, None);
         let elapsed = begun.elapsed();
-        if end.map_err(Failure::run)?.is_none() {
-            return Ok(None);
-        }
+        end.map_err(Failure::run)?.ok_or_else(Failure::stopped)?;
         best = best.min(elapsed);
         sum += elapsed;
     }
-    Ok(Some(best))
+    Ok(best)
 }

@@ -1,16 +1,15 @@
 //! Charts: speed against accuracy, measured on the user's own scene.
 
 pub mod asked;
-pub mod data;
 pub mod measure;
 pub mod picture;
 pub mod record;
 pub mod table;
 pub mod value;
-pub mod words;
 
+pub use asked::{Label, describe, unit};
 pub use asked::{check_contact, check_methods, check_metric, check_scene, check_until, methods};
+pub use measure::Chart;
 pub use record::Record;
-pub use value::{Chart, ChartOptions, chart};
+pub use value::{ChartOptions, chart};
 pub use value::{check_motion, look_ahead};
-pub use words::{Label, describe, unit};

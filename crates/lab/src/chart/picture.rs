@@ -10,11 +10,10 @@ use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, Scene};
 use a3_plot::{Curve, CurveStyle, Marker, Measurement, Problem, WorkPrecision};
 
-use super::data::Data;
-use super::measure::Study;
+use super::asked::{lasting, unit};
+use super::measure::{Chart, Study};
 use super::record::Record;
 use super::table;
-use super::words::{lasting, unit};
 
 /// Largest error of a run that is drawn, over the error of a run in which nothing moves.
 const MAX_ERROR_RATIO: f64 = 10.0;
@@ -22,64 +21,58 @@ const MAX_ERROR_RATIO: f64 = 10.0;
 /// Label of the vertical axis where work is shown, and not computing time.
 pub const WORK: &str = "evaluations per simulated second, linear algebra included";
 
-/// Creates the diagram, with a panel for each study.
-pub fn chart(
-    studies: &[Study],
-    data: &Data,
-    methods: &[&'static Method],
-    metric: Metric,
-    timed: bool,
-    title: &str,
-) -> WorkPrecision {
-    let (until, scope) = (studies[0].frames.until, studies[0].scope());
-    let model = &studies[0].scene.model;
+/// Creates the diagram of a chart, with a panel for each study.
+pub fn chart(chart: &Chart) -> WorkPrecision {
+    let Chart {
+        studies,
+        data,
+        methods,
+        metric,
+        timed,
+        ..
+    } = chart;
+    let (first, scope) = (&studies[0], studies[0].scope());
+    let (model, until) = (&first.scene.model, first.frames.until);
     // The work of a second says nothing where time has another unit.
     let is_own = model.network().is_none();
-    let problems = studies
-        .iter()
-        .map(|study| {
-            let records: Vec<_> = study.records(data).collect();
-            let beside: Vec<_> = study.beside(data).collect();
-            let mut problem = problem(&records, &beside, methods, metric, timed);
-            if studies.len() > 1 || study.stiffness() != 1.0 {
-                problem.title = format!("stiffness × {}", study.stiffness());
-            }
-            if is_own {
-                // A run that blew up is drawn at the work that it took.
-                for (curve, method) in problem.curves.iter_mut().zip(methods) {
-                    let drawn = drawn(&records, method, metric);
-                    for (run, record) in curve.runs.iter_mut().zip(drawn) {
-                        run.work *= record.lost_at.unwrap_or(until);
-                    }
+    let problems = studies.iter().map(|study| {
+        let records: Vec<_> = study.records(data).collect();
+        let beside: Vec<_> = study.beside(data).collect();
+        let mut problem = problem(&records, &beside, methods, *metric, *timed);
+        if studies.len() > 1 || study.stiffness() != 1.0 {
+            problem.title = format!("stiffness × {}", study.stiffness());
+        }
+        if is_own {
+            // A run that blew up is drawn at the work that it took.
+            for (curve, method) in problem.curves.iter_mut().zip(methods) {
+                let drawn = drawn(&records, method, *metric);
+                for (run, record) in curve.runs.iter_mut().zip(drawn) {
+                    run.work *= record.lost_at.unwrap_or(until);
                 }
             }
-            problem
-        })
-        .collect();
+        }
+        problem
+    });
+    let is_spread = |study: &Study| study.beside(data).next().is_some();
+    let bands = studies.iter().any(is_spread);
+    let bands = bands.then_some("; bands: errors at tolerances within 4 %");
     WorkPrecision {
-        title: format!("Speed against accuracy: {title}"),
+        title: format!("Speed against accuracy: {}", chart.title),
         subtitle: format!(
             "{} of motion; each point is a run with another step or tolerance{}",
             lasting(model, until),
-            if studies
-                .iter()
-                .any(|study| study.beside(data).next().is_some())
-            {
-                "; bands: errors at tolerances within 4 %"
-            } else {
-                ""
-            }
+            bands.unwrap_or_default()
         ),
-        x_label: x_label(metric, scope),
-        y_label: match (timed, is_own) {
+        x_label: x_label(*metric, scope),
+        y_label: match (*timed, is_own) {
             (true, false) => "computing time per simulated second (s)",
             (true, true) => "computing time (s)",
             (false, false) => WORK,
             (false, true) => "work (evaluations of f, linear algebra included)",
         }
         .into(),
-        problems,
-        foot: foot(methods) + turning(&studies[0].scene, methods),
+        problems: problems.collect(),
+        foot: foot(methods) + turning(&first.scene, methods),
         held: "held by impulses".into(),
     }
 }
@@ -90,10 +83,8 @@ const TURNING: [char; 3] = ['s', 'v', 'p'];
 /// Keeps the curves of the methods that are cheapest for some error in some panel, of those that
 /// the course teaches, and of own methods.
 pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: &Scene) {
-    let mut kept: Vec<_> = methods
-        .iter()
-        .map(|m| m.is_own() || is_of_course(m))
-        .collect();
+    let is_kept = |m: &&'static Method| m.is_own() || is_of_course(m);
+    let mut kept: Vec<_> = methods.iter().map(is_kept).collect();
     for problem in &chart.problems {
         for [curve, _] in problem.front() {
             kept[curve] = true;
@@ -103,16 +94,13 @@ pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: 
     if left_out == 0 {
         return;
     }
-    for problem in &mut chart.problems {
-        let mut kept = kept.iter();
-        problem
-            .curves
-            .retain(|_| kept.next().is_some_and(|kept| *kept));
-    }
     let drawn = methods.iter().zip(&kept);
     let drawn: Vec<_> = drawn.filter_map(|(m, kept)| kept.then_some(*m)).collect();
     let styles = together(&drawn);
     for problem in &mut chart.problems {
+        let mut kept = kept.iter();
+        let is_kept = |_: &Curve| kept.next().is_some_and(|kept| *kept);
+        problem.curves.retain(is_kept);
         for (curve, style) in problem.curves.iter_mut().zip(&styles) {
             curve.style = *style;
         }
@@ -141,17 +129,10 @@ pub fn foot(methods: &[&'static Method]) -> String {
 /// Returns a note on the methods that turn rigid bodies more accurately than their order says, if
 /// the chart has both.
 fn turning(scene: &Scene, methods: &[&'static Method]) -> &'static str {
-    let has_bodies = scene
-        .model
-        .network()
-        .is_some_and(|network| !network.bodies().is_empty());
-    if has_bodies
-        && methods.iter().any(|method| {
-            method
-                .letter
-                .is_some_and(|letter| TURNING.contains(&letter))
-        })
-    {
+    let network = scene.model.network();
+    let has_bodies = network.is_some_and(|network| !network.bodies().is_empty());
+    let turns = |m: &&'static Method| m.letter.is_some_and(|it| TURNING.contains(&it));
+    if has_bodies && methods.iter().any(turns) {
         " Symplectic Euler, Verlet and PEFRL turn bodies by a composition of order 6, whatever \
          their own order: in free flight their errors fall with it."
     } else {
@@ -219,10 +200,8 @@ pub fn problem(
         let records = drawn(all, method, metric);
         // A run that blew up is drawn at the work that it would have taken until the end. It was
         // not timed: its computing time is estimated from the other runs of the method.
-        let price = records
-            .iter()
-            .filter_map(|r| Some(r.seconds? / r.work))
-            .fold(f64::INFINITY, f64::min);
+        let prices = records.iter().filter_map(|r| Some(r.seconds? / r.work));
+        let price = prices.fold(f64::INFINITY, f64::min);
         let run = |r: &&Record| {
             let whole = |work: f64| r.lost_at.map_or(work, |at| work * r.until / at);
             let work = if timed {
@@ -246,10 +225,8 @@ pub fn problem(
         }
     });
     let resolved = all.iter().map(|r| r.resolved(metric)).reduce(f64::max);
-    let still = all
-        .iter()
-        .map(|r| r.still(metric))
-        .fold(f64::INFINITY, f64::min);
+    let still = all.iter().map(|r| r.still(metric));
+    let still = still.fold(f64::INFINITY, f64::min);
     Problem {
         curves: curves.collect(),
         resolved,
@@ -303,11 +280,8 @@ pub fn together(methods: &[&Method]) -> Vec<CurveStyle> {
         };
         let own = styles[k].colour;
         if nearest(own) < MIN_DIFFERENCE {
-            let spare = || {
-                SPARE
-                    .into_iter()
-                    .filter(|spare| !own_colours.contains(spare))
-            };
+            let is_free = |spare: &&str| !own_colours.contains(spare);
+            let spare = || SPARE.into_iter().filter(is_free);
             let farthest = || spare().max_by(|a, b| nearest(a).total_cmp(&nearest(b)));
             let apart = spare().find(|spare| nearest(spare) >= MIN_DIFFERENCE);
             styles[k].colour = apart.or_else(farthest).unwrap_or(own);
@@ -329,10 +303,8 @@ pub fn each(methods: &[&Method]) -> Vec<CurveStyle> {
         Some(letter) => of(letter),
         None => own
             .next()
-            .map_or_else(CurveStyle::default, |(colour, marker)| CurveStyle {
-                colour,
-                dash: OWN,
-                marker,
+            .map_or_else(CurveStyle::default, |(colour, marker)| {
+                CurveStyle::new(colour, OWN, marker)
             }),
     });
     styles.collect()
@@ -369,11 +341,7 @@ fn of(letter: char) -> CurveStyle {
         'y' => ("#8a8d91", ITERATED, Star(3, 0.4)),
         _ => return CurveStyle::default(),
     };
-    CurveStyle {
-        colour,
-        dash,
-        marker,
-    }
+    CurveStyle::new(colour, dash, marker)
 }
 
 /// Matrix from red, green and blue in linear light to the responses of the three kinds of cones

@@ -1,10 +1,13 @@
-//! A run of a chart: its scene, its setting, its errors and its work. The names of the fields are
-//! the keys of data files.
+//! The runs of a chart, each with its scene, its setting, its errors and its work; and their files,
+//! which a later chart continues. The names of the fields are the keys of these files.
 
-use a3_core::accuracy::{Errors, Metric};
+use std::path::Path;
+
+use a3_core::accuracy::Metric;
+use a3_files::failure::Failure;
+use a3_files::output::{self, Draft};
+use a3_files::rows::{Row, Rows};
 use serde::{Deserialize, Serialize};
-
-use a3_files::rows::Row;
 
 /// Run of a method on a scene, with its errors and its work.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -173,17 +176,17 @@ impl Record {
     /// Returns the error of the run; infinite if it blew up.
     #[must_use]
     pub fn error(&self, metric: Metric) -> f64 {
-        let or_infinite = |error: Option<f64>| error.unwrap_or(f64::INFINITY);
-        metric.of(&Errors {
-            position: or_infinite(self.error_position),
-            state: or_infinite(self.error_state),
-            energy: or_infinite(self.error_energy),
-            strain: or_infinite(self.error_strain),
-            momentum: or_infinite(self.error_momentum),
-            phase: or_infinite(self.error_phase),
-            penetration: or_infinite(self.error_penetration),
-            impact: or_infinite(self.error_impact),
-        })
+        let error = match metric {
+            Metric::Position => self.error_position,
+            Metric::State => self.error_state,
+            Metric::Energy => self.error_energy,
+            Metric::Strain => self.error_strain,
+            Metric::Momentum => self.error_momentum,
+            Metric::Phase => self.error_phase,
+            Metric::Penetration => self.error_penetration,
+            Metric::Impact => self.error_impact,
+        };
+        error.unwrap_or(f64::INFINITY)
     }
 
     /// Returns the smallest error that the reference can tell from 0: ten times its own.
@@ -195,16 +198,16 @@ impl Record {
     /// Returns the error of the reference itself.
     #[must_use]
     pub fn floor(&self, metric: Metric) -> f64 {
-        metric.of(&Errors {
-            position: self.floor_position,
-            state: self.floor_state,
-            energy: self.floor_energy,
-            strain: self.floor_strain,
-            momentum: self.floor_momentum,
-            phase: self.floor_phase,
-            penetration: self.floor_penetration,
-            impact: self.floor_impact,
-        })
+        match metric {
+            Metric::Position => self.floor_position,
+            Metric::State => self.floor_state,
+            Metric::Energy => self.floor_energy,
+            Metric::Strain => self.floor_strain,
+            Metric::Momentum => self.floor_momentum,
+            Metric::Phase => self.floor_phase,
+            Metric::Penetration => self.floor_penetration,
+            Metric::Impact => self.floor_impact,
+        }
     }
 
     /// Returns the error of a run in which nothing moves, beyond which an error says nothing;
@@ -219,5 +222,73 @@ impl Record {
             Metric::State => self.still_state,
             Metric::Energy | Metric::Momentum | Metric::Phase => f64::INFINITY,
         }
+    }
+}
+
+/// Runs that are known.
+pub struct Data {
+    pub runs: Rows<Record>,
+    /// File for the errors of each particle in the runs that are measured, if it was asked for.
+    pub each: Option<Each>,
+}
+
+impl Data {
+    /// Reads the runs in a file; none if there is no file, or an empty one.
+    ///
+    /// # Errors
+    /// The file holds something else, or cannot be read.
+    pub fn open(path: Option<&Path>) -> Result<Self, Failure> {
+        let runs = Rows::open(path, "the data of a chart")?;
+        Ok(Self { runs, each: None })
+    }
+
+    /// Finds the run of the same scene, method, setting and version; if `timed`, only one that was
+    /// timed, or that blew up.
+    pub fn find(&self, like: &Record, timed: bool) -> Option<&Record> {
+        let run = self.runs.find(like);
+        run.filter(|run| !timed || run.seconds.is_some() || run.lost_at.is_some())
+    }
+}
+
+/// Version of this program.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// CSV file that is being written, with a row for each run and particle.
+pub struct Each {
+    writer: csv::Writer<Draft>,
+}
+
+impl Each {
+    /// Begins a file with its heading.
+    pub fn new(path: &Path) -> Result<Self, Failure> {
+        output::check(path, &["csv"])?;
+        let mut each = Self {
+            writer: csv::Writer::from_writer(Draft::new(path)?),
+        };
+        each.row(("stiffness", "solver", "setting", "particle", "x", "y", "z"))?;
+        Ok(each)
+    }
+
+    /// Writes the largest error of each coordinate in a run (m), n x 3: all x, all y, all z.
+    pub fn add(&mut self, run: &Record, coordinates: &[f64]) -> Result<(), Failure> {
+        let n = coordinates.len() / 3;
+        for i in 0..n {
+            let of = [0, 1, 2].map(|axis| coordinates[axis * n + i]);
+            self.row((run.stiffness, &run.solver, run.setting, i, of))?;
+        }
+        Ok(())
+    }
+
+    /// Completes the file, and moves it to its place.
+    pub fn finish(mut self) -> Result<(), Failure> {
+        let flushed = self.writer.flush();
+        flushed.map_err(|e| self.writer.get_ref().failure(&e))?;
+        self.writer.into_inner().map_err(Failure::run)?.place()
+    }
+
+    /// Writes a row.
+    fn row(&mut self, row: impl serde::Serialize) -> Result<(), Failure> {
+        let written = self.writer.serialize(row);
+        written.map_err(|e| self.writer.get_ref().failure(&e.into()))
     }
 }

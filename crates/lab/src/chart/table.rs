@@ -7,10 +7,9 @@ use a3_core::{Control, Method};
 use a3_files::bounds::{LARGEST_STEP, SMALLEST_STEP};
 use a3_files::report::Report;
 
-use super::data::Data;
-use super::measure::Study;
+use super::asked::{lasting, unit};
+use super::measure::{Chart, Study};
 use super::record::Record;
-use super::words::{lasting, unit};
 
 /// Decimal digits of the errors in the table, which are 1e-2 to 1e-8.
 const DIGITS: std::ops::RangeInclusive<i32> = 2..=8;
@@ -24,29 +23,8 @@ const MIN_DURATION_RATIO: f64 = 0.02;
 /// Largest numerator of a step that is written as a fraction.
 const MAX_NUMERATOR: f64 = 9.0;
 
-/// Finds the cheapest run whose error is at most `error`.
-fn cheapest<'a>(
-    records: impl Iterator<Item = &'a Record>,
-    metric: Metric,
-    timed: bool,
-    error: f64,
-) -> Option<&'a Record> {
-    records
-        .filter(|r| r.lost_at.is_none() && r.error(metric) <= error && cost(r, timed).is_finite())
-        .min_by(|a, b| cost(a, timed).total_cmp(&cost(b, timed)))
-}
-
-/// Returns the cost of a run: its computing time (ms) if `timed`, or else its work in evaluations.
-fn cost(record: &Record, timed: bool) -> f64 {
-    if timed {
-        record.seconds.map_or(f64::INFINITY, |s| 1e3 * s)
-    } else {
-        record.work
-    }
-}
-
 /// Writes a cost to three digits.
-fn short(cost: f64) -> String {
+pub fn short(cost: f64) -> String {
     if cost < 9.995 {
         format!("{cost:.2}")
     } else if cost < 99.95 {
@@ -103,180 +81,166 @@ pub fn advice(study: &Study) -> Option<String> {
     })
 }
 
-/// Creates the table of each study, with its cheapest methods below it.
-pub fn reports(
-    studies: &[Study],
-    data: &Data,
-    methods: &[&'static Method],
-    metric: Metric,
-    timed: bool,
-) -> Vec<Report> {
-    // Plain numbers have no unit that is known.
-    let unit = match metric {
-        Metric::State => String::new(),
-        metric => format!(" {}", unit(metric)),
-    };
-    let unit = &unit;
-    // Longer ones would make the table too wide.
-    let (of_errors, of_column) = match unit.len() {
-        0..=2 => (String::new(), &**unit),
-        _ => (format!(" ({})", unit.trim()), ""),
-    };
-    let what = if timed {
-        "computing time (ms)"
-    } else {
-        "work (evaluations of the forces, linear algebra included)"
-    };
-    let reports = studies.iter().map(|study| {
-        let of = if studies.len() == 1 && study.stiffness() == 1.0 {
-            String::new()
-        } else {
-            format!(", stiffness x {}", study.stiffness())
-        };
-        let (model, until) = (&study.scene.model, study.frames.until);
-        Report {
-            head: format!(
-                "\n{what} for {} of {}{of}, to keep the error{of_errors} within\n",
-                lasting(model, until),
-                study.scene.name,
-            ),
-            rows: rows(study, data, methods, metric, timed, of_column),
-            foot: words_of_winners(study, data, methods, metric, timed, unit),
+impl Chart {
+    /// Finds the cheapest run of a study whose error is at most `error`.
+    fn cheapest<'a>(
+        &self,
+        records: impl Iterator<Item = &'a Record>,
+        error: f64,
+    ) -> Option<&'a Record> {
+        let serves = |r: &&Record| r.lost_at.is_none() && r.error(self.metric) <= error;
+        let runs = records.filter(|r| serves(r) && self.cost(r).is_finite());
+        runs.min_by(|a, b| self.cost(a).total_cmp(&self.cost(b)))
+    }
+
+    /// Returns the cost of a run: its computing time (ms) if times count, or else its work in
+    /// evaluations.
+    fn cost(&self, record: &Record) -> f64 {
+        match record.seconds {
+            _ if !self.timed => record.work,
+            Some(seconds) => 1e3 * seconds,
+            None => f64::INFINITY,
         }
-    });
-    reports.collect()
-}
+    }
 
-/// Returns the rows of a study's table: a heading, and the cost of each method for each error.
-fn rows(
-    study: &Study,
-    data: &Data,
-    methods: &[&'static Method],
-    metric: Metric,
-    timed: bool,
-    unit: &str,
-) -> Vec<Vec<String>> {
-    let heading = |digits: i32| format!(" 1e-{digits}{unit}");
-    let mut rows = vec![
-        ["solver".to_owned()]
-            .into_iter()
-            .chain(DIGITS.map(heading))
-            .collect::<Vec<_>>(),
-    ];
-    let resolved = resolved(study, data, metric);
-    for method in methods {
-        let of = |r: &&Record| r.solver == method.name;
-        let cell = |digits: i32| {
-            let error = 10f64.powi(-digits);
-            let own = cheapest(study.records(data).filter(of), metric, timed, error);
-            let all = cheapest(study.records(data), metric, timed, error);
-            own.map_or("-".to_owned(), |own| {
-                let is_best = all.is_some_and(|all| std::ptr::eq(all, own));
-                let mark = if is_best && error >= resolved {
-                    "*"
-                } else {
-                    ""
-                };
-                format!("{mark}{}", short(cost(own, timed)))
-            })
+    /// Returns the table of each study, with its cheapest methods below it.
+    pub(super) fn reports(&self) -> Vec<Report> {
+        // Plain numbers have no unit that is known.
+        let unit = match self.metric {
+            Metric::State => String::new(),
+            metric => format!(" {}", unit(metric)),
         };
-        rows.push(
-            [method.name.to_owned()]
-                .into_iter()
-                .chain(DIGITS.map(cell))
-                .collect(),
-        );
-    }
-    rows
-}
-
-/// Returns the smallest error that the reference of a study can tell from 0.
-fn resolved(study: &Study, data: &Data, metric: Metric) -> f64 {
-    let of_runs = study.records(data).map(|r| r.resolved(metric));
-    of_runs.fold(0.0, f64::max)
-}
-
-/// Returns the largest error that says anything about a study: that of a run in which nothing
-/// moves.
-fn still(study: &Study, data: &Data, metric: Metric) -> f64 {
-    let of_runs = study.records(data).map(|r| r.still(metric));
-    of_runs.fold(f64::INFINITY, f64::min)
-}
-
-/// Returns each error of the table that says something about a study, and the cheapest run that
-/// keeps it.
-pub fn winners<'a>(
-    study: &'a Study,
-    data: &'a Data,
-    metric: Metric,
-    timed: bool,
-) -> impl Iterator<Item = (f64, &'a Record)> {
-    let known = resolved(study, data, metric)..=still(study, data, metric);
-    let errors = DIGITS.map(|digits| 10f64.powi(-digits));
-    let errors = errors.filter(move |error| known.contains(error));
-    errors.filter_map(move |error| {
-        cheapest(study.records(data), metric, timed, error).map(|run| (error, run))
-    })
-}
-
-/// Writes a line for each error with the cheapest method, below a note on the collision safeguard
-/// if it acted.
-fn words_of_winners(
-    study: &Study,
-    data: &Data,
-    methods: &[&'static Method],
-    metric: Metric,
-    timed: bool,
-    unit: &str,
-) -> String {
-    let resolved = resolved(study, data, metric);
-    let still = still(study, data, metric);
-    let held = study.records(data).filter(|r| r.is_held()).count();
-    let mut text = String::new();
-    if held > 0 {
-        let all = study.records(data).count();
-        let _ = writeln!(
-            text,
-            "the collision safeguard acted in {held} of {all} runs, whose order is 1 there (half-filled \
-             markers)"
-        );
-    }
-    if !study.too_costly.is_empty() {
-        let names: Vec<_> = study.too_costly.iter().map(|method| method.name).collect();
-        let _ = writeln!(
-            text,
-            "given up at smaller steps or tolerances, where runs take too many evaluations: {}",
-            names.join(", ")
-        );
-    }
-    text.push_str("* cheapest:\n");
-    let line = |digits: i32| {
-        let error = 10f64.powi(-digits);
-        if error < resolved {
-            format!("the reference is exact enough for errors above {resolved:.0e}{unit} only")
-        } else if error > still {
-            format!("nothing moves further than {still:.0e}{unit}: such an error says nothing")
+        // Longer ones would make the table too wide.
+        let (of_errors, of_column) = match unit.len() {
+            0..=2 => (String::new(), &*unit),
+            _ => (format!(" ({})", unit.trim()), ""),
+        };
+        let what = if self.timed {
+            "computing time (ms)"
         } else {
-            match cheapest(study.records(data), metric, timed, error) {
-                None => "no run was that accurate".to_owned(),
-                Some(r) => methods
-                    .iter()
-                    .find(|m| m.name == r.solver)
-                    .map_or(String::new(), |m| {
-                        format!("{}, {}", m.title, words(m.control(r.setting)))
-                    }),
+            "work (evaluations of the forces, linear algebra included)"
+        };
+        let reports = self.studies.iter().map(|study| {
+            let of = if self.studies.len() == 1 && study.stiffness() == 1.0 {
+                String::new()
+            } else {
+                format!(", stiffness x {}", study.stiffness())
+            };
+            let lasting = lasting(&study.scene.model, study.frames.until);
+            let name = &study.scene.name;
+            Report {
+                head: format!(
+                    "\n{what} for {lasting} of {name}{of}, to keep the error{of_errors} within\n"
+                ),
+                rows: self.rows(study, of_column),
+                foot: self.words_of_winners(study, &unit),
             }
-        }
-    };
-    let lines: Vec<_> = DIGITS.map(|digits| (digits, line(digits))).collect();
-    for same in lines.chunk_by(|a, b| a.1 == b.1) {
-        let (first, last) = (same[0].0, same[same.len() - 1].0);
-        let to = if first == last {
-            String::new()
-        } else {
-            format!(" to 1e-{last}")
-        };
-        let _ = writeln!(text, "  1e-{first}{to}{unit}  {}", same[0].1);
+        });
+        reports.collect()
     }
-    text
+
+    /// Returns the rows of a study's table: a heading, and the cost of each method for each error.
+    fn rows(&self, study: &Study, unit: &str) -> Vec<Vec<String>> {
+        let row = |name: &str, cells: &mut dyn Iterator<Item = String>| {
+            [name.to_owned()].into_iter().chain(cells).collect()
+        };
+        let heading = |digits: i32| format!(" 1e-{digits}{unit}");
+        let mut rows = vec![row("solver", &mut DIGITS.map(heading))];
+        let [resolved, _] = self.known(study);
+        for method in &self.methods {
+            let of = |r: &&Record| r.solver == method.name;
+            let cell = |digits: i32| {
+                let error = 10f64.powi(-digits);
+                let own = self.cheapest(study.records(&self.data).filter(of), error);
+                let all = self.cheapest(study.records(&self.data), error);
+                own.map_or("-".to_owned(), |own| {
+                    let is_best = all.is_some_and(|all| std::ptr::eq(all, own));
+                    let is_marked = is_best && error >= resolved;
+                    let mark = if is_marked { "*" } else { "" };
+                    format!("{mark}{}", short(self.cost(own)))
+                })
+            };
+            rows.push(row(method.name, &mut DIGITS.map(cell)));
+        }
+        rows
+    }
+
+    /// Returns the smallest error that the reference of a study can tell from 0, and the largest
+    /// one that says anything: that of a run in which nothing moves.
+    fn known(&self, study: &Study) -> [f64; 2] {
+        let records = || study.records(&self.data);
+        let resolved = records().map(|r| r.resolved(self.metric));
+        let still = records().map(|r| r.still(self.metric));
+        [
+            resolved.fold(0.0, f64::max),
+            still.fold(f64::INFINITY, f64::min),
+        ]
+    }
+
+    /// Returns each error of the tables that says something, and the cheapest run that keeps it: by
+    /// computing time if that was asked for, or else by work.
+    pub fn winners(&self) -> impl Iterator<Item = (f64, &Record)> {
+        self.studies.iter().flat_map(move |study| {
+            let [resolved, still] = self.known(study);
+            let errors = DIGITS.map(|digits| 10f64.powi(-digits));
+            let errors = errors.filter(move |error| (resolved..=still).contains(error));
+            errors.filter_map(move |error| {
+                let run = self.cheapest(study.records(&self.data), error);
+                run.map(|run| (error, run))
+            })
+        })
+    }
+
+    /// Writes a line for each error with the cheapest method, below a note on the collision
+    /// safeguard if it acted.
+    fn words_of_winners(&self, study: &Study, unit: &str) -> String {
+        let records = || study.records(&self.data);
+        let [resolved, still] = self.known(study);
+        let held = records().filter(|r| r.is_held()).count();
+        let mut text = String::new();
+        if held > 0 {
+            let all = records().count();
+            let _ = writeln!(
+                text,
+                "the collision safeguard acted in {held} of {all} runs, whose order is 1 there (half-filled \
+                 markers)"
+            );
+        }
+        if !study.too_costly.is_empty() {
+            let names: Vec<_> = study.too_costly.iter().map(|method| method.name).collect();
+            let _ = writeln!(
+                text,
+                "given up at smaller steps or tolerances, where runs take too many evaluations: {}",
+                names.join(", ")
+            );
+        }
+        text.push_str("* cheapest:\n");
+        let line = |digits: i32| {
+            let error = 10f64.powi(-digits);
+            if error < resolved {
+                return format!(
+                    "the reference is exact enough for errors above {resolved:.0e}{unit} only"
+                );
+            }
+            if error > still {
+                return format!(
+                    "nothing moves further than {still:.0e}{unit}: such an error says nothing"
+                );
+            }
+            let Some(run) = self.cheapest(records(), error) else {
+                return "no run was that accurate".to_owned();
+            };
+            let method = self.methods.iter().find(|m| m.name == run.solver);
+            let named = |m: &&Method| format!("{}, {}", m.title, words(m.control(run.setting)));
+            method.map_or(String::new(), named)
+        };
+        let lines: Vec<_> = DIGITS.map(|digits| (digits, line(digits))).collect();
+        for same in lines.chunk_by(|a, b| a.1 == b.1) {
+            let (first, last) = (same[0].0, same[same.len() - 1].0);
+            let to = (first != last).then(|| format!(" to 1e-{last}"));
+            let to = to.unwrap_or_default();
+            let _ = writeln!(text, "  1e-{first}{to}{unit}  {}", same[0].1);
+        }
+        text
+    }
 }

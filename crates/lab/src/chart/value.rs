@@ -10,12 +10,9 @@ use a3_files::report::Report;
 use a3_files::rows;
 use a3_plot::{Figure, WorkPrecision};
 
-use super::asked::{check_methods, check_metric, check_scene, check_until};
-use super::data::Data;
-use super::data::Each;
-use super::measure::{Measured, Study, stiffened};
-use super::record::Record;
-use super::words::Label;
+use super::asked::{Label, check_methods, check_metric, check_scene, check_until};
+use super::measure::{Chart, Measured, Study, stiffened};
+use super::record::{Data, Each, Record};
 use super::{picture, table};
 
 /// Options of a [chart](chart()).
@@ -53,18 +50,6 @@ impl Default for ChartOptions {
             stiffness: vec![1.0],
         }
     }
-}
-
-/// Runs of methods on a scene at smaller and smaller steps or tolerances, with their errors against
-/// a reference, and their costs.
-pub struct Chart {
-    pub(super) studies: Vec<Study>,
-    pub(super) data: Data,
-    pub(super) methods: Vec<&'static Method>,
-    pub(super) metric: Metric,
-    pub(super) timed: bool,
-    title: String,
-    complete: bool,
 }
 
 /// Measures a chart of these methods on a scene, as `a3 chart` does; of all methods of the table
@@ -123,7 +108,9 @@ impl Chart {
             until = Some(until.map_or(found.until, |until: f64| until.min(found.until)));
             scenes.push((factor, scene, found.motion));
         }
-        let until = until.filter(|_| !scenes.is_empty()).ok_or_else(nothing)?;
+        let until = until
+            .filter(|_| !scenes.is_empty())
+            .ok_or_else(Failure::stopped)?;
         let measured = Measured {
             timed: options.timed,
             spread: options.spread,
@@ -152,7 +139,7 @@ impl Chart {
         monitor.expect(expected);
         self.complete = true;
         for study in &mut self.studies {
-            if !study.run(&mut self.data, monitor)? {
+            if Failure::unless_stopped(study.run(&mut self.data, monitor))?.is_none() {
                 self.complete = false;
                 break;
             }
@@ -184,7 +171,7 @@ impl Chart {
             .retain(|study| study.records(data).next().is_some());
         match (self.studies.is_empty(), &costly[..]) {
             (false, _) => Ok(()),
-            (true, []) => Err(nothing()),
+            (true, []) => Err(Failure::stopped()),
             (true, costly) => Err(Failure::run(format!(
                 "runs take too many evaluations ({}): name a solver for stiff systems, such as radau or bdf, or \
                  end the runs earlier",
@@ -198,13 +185,6 @@ impl Chart {
         self.studies
             .iter()
             .flat_map(|study| study.records(&self.data).chain(study.beside(&self.data)))
-    }
-
-    /// Returns each error of the tables that says something, and the cheapest run that keeps it: by
-    /// computing time if that was asked for, or else by work.
-    pub fn winners(&self) -> impl Iterator<Item = (f64, &Record)> {
-        let studies = self.studies.iter();
-        studies.flat_map(|study| table::winners(study, &self.data, self.metric, self.timed))
     }
 
     /// Returns the methods, in the order of the table and of the legend.
@@ -245,28 +225,10 @@ impl Chart {
         reports.iter().map(Report::text).collect()
     }
 
-    /// Returns the table of each study.
-    pub(super) fn reports(&self) -> Vec<Report> {
-        table::reports(
-            &self.studies,
-            &self.data,
-            &self.methods,
-            self.metric,
-            self.timed,
-        )
-    }
-
     /// Returns the work-precision diagram, which may be changed before it is drawn.
     #[must_use]
     pub fn picture(&self) -> WorkPrecision {
-        picture::chart(
-            &self.studies,
-            &self.data,
-            &self.methods,
-            self.metric,
-            self.timed,
-            &self.title,
-        )
+        picture::chart(self)
     }
 
     /// Returns the diagram with the curves that the command draws by default: those of methods that
@@ -343,11 +305,6 @@ impl Chart {
         let runs: Vec<_> = self.runs().cloned().collect();
         rows::write(&runs, json).map_err(Failure::run)
     }
-}
-
-/// Creates the failure of a chart that was stopped before its first run ended.
-fn nothing() -> Failure {
-    Failure::Interrupted("interrupted before anything was measured".into())
 }
 
 /// Growth of a small difference from which on it is told.

@@ -1,7 +1,6 @@
 //! Choices: the cheapest solver for an error, or the most accurate one for a budget.
 
 mod report;
-mod search;
 mod value;
 
 pub use report::{command, report};

@@ -4,11 +4,10 @@ use std::fmt::Write;
 
 use a3_core::accuracy::{Scope, SetBy};
 use a3_core::{Control, Disturbances, Method, Scene};
-use a3_files::report::Report;
+use a3_files::report::{Report, headings};
 use a3_files::setup::{Request, SceneOptions};
 
-use super::search::ENOUGH_MARGIN;
-use super::value::{Choice, Chosen, Goal, describe_goal};
+use super::value::{Choice, Chosen, ENOUGH_MARGIN, Goal, describe_goal};
 use crate::chart::table::fraction;
 use crate::chart::{describe, unit};
 use crate::motion::words as scope_in_words;
@@ -21,20 +20,16 @@ const MAX_NUMERATOR: f64 = 100.0;
 
 /// Says why the best candidate's step or tolerance is not larger.
 fn set_by(best: &Chosen) -> String {
-    let what = if best.control.step().is_some() {
-        "step"
-    } else {
-        "tolerance"
+    let what = match best.control {
+        Control::Step(_) => "step",
+        Control::Tolerance(_) => "tolerance",
     };
-    match best.set_by {
-        SetBy::Accuracy => {
-            format!("accuracy limits the {what}: with a larger one the error is too large\n")
-        }
-        SetBy::Stability => {
-            format!("stability limits the {what}: with a larger one the run is unstable\n")
-        }
-        SetBy::Nothing => format!("nothing limits the {what}: no larger one was tried\n"),
-    }
+    let (by, why) = match best.set_by {
+        SetBy::Accuracy => ("accuracy", "with a larger one the error is too large"),
+        SetBy::Stability => ("stability", "with a larger one the run is unstable"),
+        SetBy::Nothing => ("nothing", "no larger one was tried"),
+    };
+    format!("{by} limits the {what}: {why}\n")
 }
 
 /// Says where the error of the best run holds, if it does not hold at all times.
@@ -65,19 +60,9 @@ fn holds(goal: Goal, choice: &Choice) -> String {
 /// limits the best one.
 pub fn report(on: Disturbances, scene: &Scene, goal: (Goal, Scope), choice: &Choice) -> Report {
     let (metric, until) = (choice.metric, choice.until);
-    let error = format!(" error ({})", unit(metric));
-    let mut rows = vec![
-        [
-            "",
-            "solver",
-            " setting",
-            &*error,
-            " evaluations/s",
-            " time/frame",
-        ]
-        .map(String::from)
-        .to_vec(),
-    ];
+    let unit = unit(metric);
+    let columns = format!("|solver| setting| error ({unit})| evaluations/s| time/frame");
+    let mut rows = headings(&columns);
     for (k, c) in choice.found.iter().enumerate() {
         let cost = c.milliseconds;
         rows.push(vec![
@@ -101,10 +86,9 @@ pub fn report(on: Disturbances, scene: &Scene, goal: (Goal, Scope), choice: &Cho
     let foot = match goal {
         Goal::Error(_) => set_by(choice.best()),
         Goal::Budget(_) if choice.best().error < ENOUGH_MARGIN * choice.floor => {
+            let floor = choice.floor;
             format!(
-                "the reference, known to {:.0e} {}, is the limit, not the budget: finer runs were not tried\n",
-                choice.floor,
-                unit(metric)
+                "the reference, known to {floor:.0e} {unit}, is the limit, not the budget: finer runs were not tried\n"
             )
         }
         Goal::Budget(_) => String::new(),
@@ -149,15 +133,9 @@ pub fn command(request: &Request, method: &Method, control: Control) -> String {
     if let Some(grid) = grid {
         let _ = write!(words, " --grid {}x{}", grid.rows(), grid.cols());
     }
-    for (on, option) in [
-        (on.wind, " --wind"),
-        (on.swing, " --swing"),
-        (on.contact, " --self-collision"),
-    ] {
-        if on {
-            words += option;
-        }
-    }
+    let options = [" --wind", " --swing", " --self-collision"];
+    let given = [on.wind, on.swing, on.contact].into_iter().zip(options);
+    words.extend(given.filter_map(|(on, option)| on.then_some(option)));
     words
 }
 

@@ -20,67 +20,49 @@ pub enum Constant {
     Velocities,
 }
 
+/// All constants, with their names and units.
+#[rustfmt::skip]
+pub const CONSTANTS: [(Constant, &str, &str); 9] = [
+    (Constant::Gravity, "gravity", "m/s²"),
+    (Constant::Stiffness, "stiffness", "N/m"),
+    (Constant::Springs, "forces of springs", "N"),
+    (Constant::RestLength, "rest length", "m"),
+    (Constant::Damping, "damping", "N s/m"),
+    (Constant::Drag, "drag", "kg/s"),
+    (Constant::Mass, "mass", "kg"),
+    (Constant::Start, "velocities at the start", "m/s"),
+    (Constant::Velocities, "velocities at the end of each step", "m/s"),
+];
+
 /// Factors that have a name: constant, factor, words that follow "with", and the question to the
 /// author.
+#[rustfmt::skip]
 const NAMED: [(Constant, f64, &str, &str); 11] = [
-    (
-        Constant::Gravity,
-        0.5,
-        "half the gravity",
-        "is a factor 1/2 in the gravity, or is its sum taken by halves?",
-    ),
-    (
-        Constant::Gravity,
-        2.0,
-        "twice the gravity",
-        "is gravity added twice?",
-    ),
-    (
-        Constant::Gravity,
-        0.0,
-        "no gravity",
-        "is gravity added to the forces?",
-    ),
-    (
-        Constant::Gravity,
-        -1.0,
-        "gravity upwards",
-        "has gravity the wrong sign?",
-    ),
+    (Constant::Gravity, 0.5, "half the gravity",
+     "is a factor 1/2 in the gravity, or is its sum taken by halves?"),
+    (Constant::Gravity, 2.0, "twice the gravity", "is gravity added twice?"),
+    (Constant::Gravity, 0.0, "no gravity", "is gravity added to the forces?"),
+    (Constant::Gravity, -1.0, "gravity upwards", "has gravity the wrong sign?"),
     (Constant::Stiffness, 2.0, TWICE.0, TWICE.1),
     (Constant::Springs, 2.0, TWICE.0, TWICE.1),
     (Constant::Stiffness, -1.0, PUSH.0, PUSH.1),
     (Constant::Springs, -1.0, PUSH.0, PUSH.1),
-    (
-        Constant::RestLength,
-        0.0,
-        "rest lengths of 0",
-        "is the rest length subtracted from the length?",
-    ),
-    (
-        Constant::Damping,
-        0.0,
-        "springs without damping",
-        "is the damping of the springs added to their force?",
-    ),
-    (
-        Constant::Drag,
-        0.0,
-        "no drag",
-        "is the drag added to the forces?",
-    ),
+    (Constant::RestLength, 0.0, "rest lengths of 0",
+     "is the rest length subtracted from the length?"),
+    (Constant::Damping, 0.0, "springs without damping",
+     "is the damping of the springs added to their force?"),
+    (Constant::Drag, 0.0, "no drag", "is the drag added to the forces?"),
 ];
-const TWICE: (&str, &str) = (
-    "every spring twice",
-    "is every spring visited from both of its ends?",
-);
-const PUSH: (&str, &str) = (
-    "springs that push where they should pull",
-    "has the force of a spring the wrong sign?",
-);
+#[rustfmt::skip]
+const TWICE: (&str, &str) = ("every spring twice", "is every spring visited from both of its ends?");
+#[rustfmt::skip]
+const PUSH: (&str, &str) =
+    ("springs that push where they should pull", "has the force of a spring the wrong sign?");
 
 /// Largest distance of a fitted factor from one that has a name.
 const NEAR: f64 = 1e-6;
+/// Number of digits of constants as people type them.
+const DIGITS: usize = 6;
 
 /// Constant that differs from that of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,83 +74,51 @@ pub struct Change {
     pub own: Option<f64>,
 }
 
-impl Constant {
-    /// All constants.
-    pub const ALL: [Self; 9] = [
-        Self::Gravity,
-        Self::Stiffness,
-        Self::Springs,
-        Self::RestLength,
-        Self::Damping,
-        Self::Drag,
-        Self::Mass,
-        Self::Start,
-        Self::Velocities,
-    ];
-
-    /// Returns the name of the constant, and its unit.
-    pub fn name(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Gravity => ("gravity", "m/s²"),
-            Self::Stiffness => ("stiffness", "N/m"),
-            Self::Springs => ("forces of springs", "N"),
-            Self::RestLength => ("rest length", "m"),
-            Self::Damping => ("damping", "N s/m"),
-            Self::Drag => ("drag", "kg/s"),
-            Self::Mass => ("mass", "kg"),
-            Self::Start => ("velocities at the start", "m/s"),
-            Self::Velocities => ("velocities at the end of each step", "m/s"),
-        }
-    }
-}
-
 impl Change {
     /// Returns the change with a number of few digits, as people type it, or with a factor that has
     /// a name.
     pub fn typed(self) -> Self {
         let own = self.own.unwrap_or(1.0);
-        let is = |row: &&(Constant, f64, _, _)| {
-            row.0 == self.constant && (row.1 - self.factor).abs() < NEAR
-        };
-        let named = NAMED.iter().find(is).map(|row| row.1);
-        let factor = named.unwrap_or_else(|| short(own * self.factor, DIGITS) / own);
+        let typed = || short(own * self.factor, DIGITS) / own;
+        let factor = self.named(NEAR).map_or_else(typed, |row| row.1);
         Self { factor, ..self }
     }
 
-    fn named(self) -> Option<(&'static str, &'static str)> {
-        let is = |row: &&(Constant, f64, _, _)| (row.0, row.1) == (self.constant, self.factor);
-        let row = NAMED.iter().find(is)?;
-        Some((row.2, row.3))
+    /// Returns the row of the named factor from which this one differs by less than `near`.
+    fn named(self, near: f64) -> Option<&'static (Constant, f64, &'static str, &'static str)> {
+        let is_near = |factor: f64| (factor - self.factor).abs() < near;
+        let mut rows = NAMED.iter();
+        rows.find(|row| row.0 == self.constant && is_near(row.1))
     }
 
-    /// Returns the change in words, which follow "with".
-    pub fn words(self) -> String {
-        let (name, unit) = self.constant.name();
-        match (self.named(), self.own) {
-            (Some((words, _)), _) => words.into(),
-            (None, Some(own)) => {
+    /// Returns the name of the constant, and its unit.
+    pub fn name(self) -> (&'static str, &'static str) {
+        let row = CONSTANTS.iter().find(|row| row.0 == self.constant);
+        row.map_or(("", ""), |row| (row.1, row.2))
+    }
+
+    /// Returns the change in words, which follow "with", and the question to the author.
+    fn words(self) -> [String; 2] {
+        let (name, unit) = self.name();
+        if let Some((.., words, question)) = self.named(f64::MIN_POSITIVE) {
+            return [*words, *question].map(String::from);
+        }
+        let words = match self.own {
+            Some(own) => {
                 let [found, own] = [own * self.factor, own].map(|value| short(value, DIGITS));
                 format!("a {name} of {found} {unit} in place of {own} {unit}")
             }
-            (None, None) => format!("the {name} times {}", short(self.factor, DIGITS)),
-        }
-    }
-
-    /// Returns the question to the author.
-    pub fn question(self) -> String {
-        let name = self.constant.name().0;
-        match self.named() {
-            Some((_, question)) => question.into(),
-            None if self.constant == Constant::Velocities => {
+            None => format!("the {name} times {}", short(self.factor, DIGITS)),
+        };
+        let question = match self.constant {
+            Constant::Velocities => {
                 "is a factor of the velocities meant? Drag belongs in the forces".into()
             }
-            None => format!("is the {name} that of the scene?"),
-        }
+            _ => format!("is the {name} that of the scene?"),
+        };
+        [words, question]
     }
 }
-
-/// Number of digits of constants as people type them.
-const DIGITS: usize = 6;
 
 /// Mistake in the forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,65 +139,49 @@ pub enum Mistake {
     NoBendSprings,
 }
 
-impl Mistake {
-    /// All mistakes but constants.
-    pub const ALL: [Self; 12] = [
-        Self::GravityAsForce,
-        Self::NotNormalised,
-        Self::StretchAsRatio,
-        Self::FirstEndOnly,
-        Self::SecondEndOnly,
-        Self::DampingAcross,
-        Self::DragPerMass,
-        Self::UnitMasses,
-        Self::ForcesKept,
-        Self::PinsMove,
-        Self::NoShearSprings,
-        Self::NoBendSprings,
-    ];
+/// All mistakes but constants, each in a few words, which follow "with", and with the question to
+/// the author.
+#[rustfmt::skip]
+pub const MISTAKES: [(Mistake, &str, &str); 12] = [
+    (Mistake::GravityAsForce, "a weight that does not depend on the mass",
+     "is the weight m g, and not g?"),
+    (Mistake::NotNormalised, "spring directions that are not normalised",
+     "is the direction of a spring divided by its length?"),
+    (Mistake::StretchAsRatio, "stretch as a ratio of lengths",
+     "is the force the stiffness times the stretch in metres, not over the rest length?"),
+    (Mistake::FirstEndOnly, "spring forces on the first end only", ONE_END),
+    (Mistake::SecondEndOnly, "spring forces on the second end only", ONE_END),
+    (Mistake::DampingAcross, "damping of the whole relative velocity",
+     "does a spring damp only the part of the relative velocity along it?"),
+    (Mistake::DragPerMass, "drag that grows with the mass",
+     "is the drag -c v a force, which is divided by the mass?"),
+    (Mistake::UnitMasses, "forces not divided by the masses",
+     "are the forces divided by the masses?"),
+    (Mistake::ForcesKept, "forces that are never cleared",
+     "are the forces set to 0 before each evaluation?"),
+    (Mistake::PinsMove, "pins that move", "are the pinned particles left where they are?"),
+    (Mistake::NoShearSprings, "no shear springs",
+     "are the shear springs, across the cells, in the list?"),
+    (Mistake::NoBendSprings, "no bend springs",
+     "are the bend springs, over two cells, in the list?"),
+];
+const ONE_END: &str = "is the opposite force added to the other end of a spring?";
 
-    /// Returns the mistake in a few words, which follow "with".
-    pub fn words(self) -> String {
-        let words = match self {
-            Self::Constant(change) => return change.words(),
-            Self::GravityAsForce => "a weight that does not depend on the mass",
-            Self::NotNormalised => "spring directions that are not normalised",
-            Self::StretchAsRatio => "stretch as a ratio of lengths",
-            Self::FirstEndOnly => "spring forces on the first end only",
-            Self::SecondEndOnly => "spring forces on the second end only",
-            Self::DampingAcross => "damping of the whole relative velocity",
-            Self::DragPerMass => "drag that grows with the mass",
-            Self::UnitMasses => "forces not divided by the masses",
-            Self::ForcesKept => "forces that are never cleared",
-            Self::PinsMove => "pins that move",
-            Self::NoShearSprings => "no shear springs",
-            Self::NoBendSprings => "no bend springs",
-        };
-        words.into()
+impl Mistake {
+    /// Returns the mistake in a few words, which follow "with", and the question to the author.
+    pub fn words(self) -> [String; 2] {
+        if let Self::Constant(change) = self {
+            return change.words();
+        }
+        let row = MISTAKES.iter().find(|row| row.0 == self);
+        row.map_or_else(Default::default, |row| [row.1, row.2].map(String::from))
     }
 
-    /// Returns the question to the author.
-    pub fn question(self) -> String {
-        let question = match self {
-            Self::Constant(change) => return change.question(),
-            Self::GravityAsForce => "is the weight m g, and not g?",
-            Self::NotNormalised => "is the direction of a spring divided by its length?",
-            Self::StretchAsRatio => {
-                "is the force the stiffness times the stretch in metres, not over the rest length?"
-            }
-            Self::FirstEndOnly | Self::SecondEndOnly => {
-                "is the opposite force added to the other end of a spring?"
-            }
-            Self::DampingAcross => {
-                "does a spring damp only the part of the relative velocity along it?"
-            }
-            Self::DragPerMass => "is the drag -c v a force, which is divided by the mass?",
-            Self::UnitMasses => "are the forces divided by the masses?",
-            Self::ForcesKept => "are the forces set to 0 before each evaluation?",
-            Self::PinsMove => "are the pinned particles left where they are?",
-            Self::NoShearSprings => "are the shear springs, across the cells, in the list?",
-            Self::NoBendSprings => "are the bend springs, over two cells, in the list?",
-        };
-        question.into()
+    /// Returns the constant that is another, if the mistake is that.
+    pub fn change(self) -> Option<Change> {
+        match self {
+            Self::Constant(change) => Some(change),
+            _ => None,
+        }
     }
 }

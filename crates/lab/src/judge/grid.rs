@@ -34,26 +34,21 @@ impl Grid {
         let shortest = gaps.filter(|gap| *gap > 0.0).reduce(f64::min)?;
         // Times with few digits may be exact.
         [0.0, rounding].into_iter().find_map(|rounding| {
-            let guesses = (1..=MAX_PARTS).map(|parts| shortest / f64::from(parts));
-            guesses
-                .into_iter()
-                .find_map(|guess| Self::near(times, rounding, guess))
+            let mut guesses = (1..=MAX_PARTS).map(|parts| shortest / f64::from(parts));
+            guesses.find_map(|guess| Self::near(times, rounding, guess))
         })
     }
 
     /// Times as multiples of a known step (s).
     pub fn of_step(times: &[f64], rounding: f64, step: f64) -> Option<Self> {
-        let known = [0.0, rounding].into_iter();
-        known
-            .into_iter()
-            .find_map(|rounding| Self::of_known(times, rounding, step))
-    }
-
-    fn of_known(times: &[f64], rounding: f64, step: f64) -> Option<Self> {
-        let within = |(t, n): (&f64, &u64)| (t - *n as f64 * step).abs() <= tolerance(*t, rounding);
         let numbers: Vec<_> = times.iter().map(|t| (t / step).round() as u64).collect();
-        let fits =
-            tolerance(0.0, rounding) < MAX_SHARE * step && times.iter().zip(&numbers).all(within);
+        let fits = |rounding: &f64| {
+            let within =
+                |(t, n): (&f64, &u64)| (t - *n as f64 * step).abs() <= tolerance(*t, *rounding);
+            let is_fine = tolerance(0.0, *rounding) < MAX_SHARE * step;
+            is_fine && times.iter().zip(&numbers).all(within)
+        };
+        let fits = [0.0, rounding].iter().any(fits);
         fits.then_some(Self { step, numbers })
     }
 

@@ -1,35 +1,31 @@
 //! The judgement of a file.
 
-use a3_core::accuracy::Reference;
+use a3_core::accuracy::{Frames, Reference, Scope};
+use a3_core::stability::{Mode, spectrum};
 use a3_core::{Model, Network, Scene};
 use a3_files::failure::Failure;
-use a3_files::monitor::Monitor;
 use a3_files::states::States;
 
-use super::plain::Plain;
+use super::grid::gcd;
 use super::rows::{Difference, Rows, difference, distance, farthest, with_y_up};
 use super::search::{Match, search};
-use super::trial::{Judged, size};
-use super::truth::{Truth, frame_at};
+use super::trial::{Course, Judged, stopped};
+use crate::chart::measure::{precision, reference};
 
 /// Ratio of the error with the axes y and z exchanged to that without, below which they are.
 const MUCH_LESS: f64 = 0.1;
-
-/// Scene with all that judgements of its files share.
-pub struct Course<'a> {
-    /// Companion of the work, which may stop it.
-    pub monitor: &'a dyn Monitor,
-    pub scene: &'a Scene,
-    /// The scene as masses and springs, if it is that.
-    pub plain: Option<&'a Plain>,
-    /// Time up to which states are judged (s).
-    pub until: f64,
-    /// Step of the programs (s), if it is known.
-    pub step: Option<f64>,
-}
+/// Largest number of coordinates in all frames of a reference.
+const MAX_NUMBERS: f64 = 2e6;
+/// Number of frames in a radian of the fastest mode, between which states are interpolated: eight
+/// data in four frames then err by 1e-12 of its amplitude.
+const FRAMES_PER_RADIAN: f64 = 10.0;
+/// Least number of frames in a second.
+const MIN_RATE: f64 = 60.0;
+/// Largest error of a time at which it is that of a frame, relative to it.
+const TOLERANCE: f64 = 1e-9;
 
 /// Errors of a file, and the method that it agrees with.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Judgement {
     /// Number of states of the file.
     pub states: usize,
@@ -74,7 +70,7 @@ pub struct Judgement {
 }
 
 /// Largest error.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Worst {
     /// Error (m).
     pub error: f64,
@@ -106,43 +102,94 @@ impl Drift {
     }
 }
 
-/// Judges states. `None` if the monitor stopped it.
-///
-/// # Errors
-/// No state is within the time of the judgement, or the reference cannot be computed.
-pub fn judge(
-    course: &Course,
-    truth: &mut Truth,
-    states: &States,
-) -> Result<Option<Judgement>, Failure> {
-    let scene = course.scene;
-    let rows = Rows::of(states, course.until, course.step).map_err(Failure::usage)?;
-    let Some(reference) = truth.at(&rows)? else {
-        return Ok(None);
-    };
-    let mut judgement = measured(scene, states, &rows, reference);
-    let judged = Judged {
-        monitor: course.monitor,
-        scene,
-        plain: course.plain,
-        rows: &rows,
-        motion: judgement.motion,
-        step: course.step,
-        size: size(scene),
-        radius: scene.extent().1,
-        noise: None,
-    };
-    let at_start = matches!(judgement.start, None | Some(Difference::Later(_)));
-    let Some(found) = search(&judged, at_start) else {
-        return Ok(None);
-    };
-    let grid = rows.grid.as_ref();
-    let agreed = found.found.map(|agreement| agreement.step);
-    judgement.step = agreed.or(course.step).or(grid.map(|grid| grid.step));
-    judgement.was_searched = grid.is_some() || course.step.is_some();
-    judgement.has_known_step = course.step.is_some();
-    judgement.found = found;
-    Ok(Some(judgement))
+impl Course<'_> {
+    /// Judges the states of a file.
+    ///
+    /// # Errors
+    /// No state is within the time of the judgement, the reference cannot be computed, or the
+    /// monitor stopped it.
+    pub fn judge(&mut self, file: &str, states: &States) -> Result<Judgement, Failure> {
+        let (scene, of_file) = (self.scene, |why| Failure::usage(format!("{file}: {why}")));
+        let rows = Rows::of(states, self.horizon.until, self.step).map_err(of_file)?;
+        let mut judgement = match self.reference(&rows) {
+            Err(Failure::Usage(why)) => return Err(of_file(why)),
+            reference => measured(scene, states, &rows, reference?),
+        };
+        let at_start = matches!(judgement.start, None | Some(Difference::Later(_)));
+        let judged = Judged::new(self, &rows, judgement.motion);
+        let found = search(&judged, at_start).ok_or_else(stopped)?;
+        let grid = rows.grid.as_ref().map(|grid| grid.step);
+        let agreed = found.found.map(|agreement| agreement.step);
+        judgement.step = agreed.or(self.step).or(grid);
+        judgement.was_searched = grid.or(self.step).is_some();
+        judgement.has_known_step = self.step.is_some();
+        judgement.found = found;
+        Ok(judgement)
+    }
+
+    /// Returns the reference with states at the times of rows.
+    fn reference(&mut self, rows: &Rows) -> Result<&Reference, Failure> {
+        let known = self.references.iter().position(|known| serves(known, rows));
+        if let Some(known) = known {
+            return Ok(&self.references[known]);
+        }
+        let frames = self.frames(rows).map_err(Failure::usage)?;
+        let precision = precision(self.scene, self.horizon.motion);
+        let go_on = &|| self.monitor.go_on();
+        let made = reference(go_on, self.scene, frames, Scope::default(), precision);
+        self.references
+            .push(Failure::unless_stopped(made)?.ok_or_else(stopped)?);
+        Ok(&self.references[self.references.len() - 1])
+    }
+
+    /// Frames at the times of rows or, if there is no such grid, so close together that states
+    /// between them are interpolated accurately.
+    fn frames(&self, rows: &Rows) -> Result<Frames, String> {
+        let until = rows.until();
+        let most = MAX_NUMBERS / (3.0 * self.scene.model.particles().max(1) as f64);
+        if let Some(grid) = &rows.grid {
+            let part = grid.numbers.iter().copied().fold(0, gcd);
+            let last = grid.numbers[grid.numbers.len() - 1];
+            let count = last / part.max(1);
+            if count as f64 <= most {
+                return Ok(Frames { until, count });
+            }
+        }
+        let modes = spectrum(self.scene.model.system(), 0.0, &self.scene.state);
+        let fastest = modes.first().map_or(0.0, Mode::frequency);
+        let rate = (FRAMES_PER_RADIAN * fastest).max(MIN_RATE);
+        let count = (rate * until).ceil().max(4.0);
+        if count > most {
+            let particles = self.scene.model.particles();
+            return Err(match rows.grid {
+                Some(_) => format!(
+                    "{until} s of it are too many states of {particles} particles: write fewer, or judge less with --until"
+                ),
+                None => format!(
+                    "its times are not equally spaced, and {until} s are too long to interpolate between them: write \
+                     states at equal distances, or judge less with --until"
+                ),
+            });
+        }
+        Ok(Frames {
+            until,
+            count: count as u64,
+        })
+    }
+}
+
+/// Returns whether a reference has states at the times of rows.
+fn serves(reference: &Reference, rows: &Rows) -> bool {
+    let all = rows.times.iter();
+    all.into_iter().all(|t| frame_at(reference, *t).is_some())
+}
+
+/// Returns the time (s) of the frame at a time t (s).
+pub fn frame_at(reference: &Reference, t: f64) -> Option<f64> {
+    let frames = &reference.frames;
+    let k = (t / frames.spacing()).round() as u64;
+    let time = (k <= frames.count).then(|| frames.time(k))?;
+    ((t - time).abs() <= TOLERANCE * t).then_some(time)
 }
 
 /// Measures the errors of rows.
@@ -151,9 +198,7 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
     let mut errors = vec![];
     let mut worst = Worst {
         error: -1.0,
-        time: 0.0,
-        particle: 0,
-        distance: 0.0,
+        ..Worst::default()
     };
     let (mut motion, n) = (0.0, 3 * model.particles());
     let mut turned = [0.0f64; 2];
@@ -204,20 +249,16 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
         energy: network.map(|_| energy),
         kinetic,
         momentum: network.map(|_| momentum),
-        step: None,
-        was_searched: false,
-        has_known_step: false,
-        found: Match::default(),
         seconds: states.seconds,
         not_finite_at: states.not_finite_at,
+        ..Judgement::default()
     }
 }
 
 /// Returns the network of a model, if positions and velocities alone tell its energy.
 fn conserving(model: &Model) -> Option<&Network> {
-    model
-        .network()
-        .filter(|network| network.bodies().is_empty())
+    let network = model.network();
+    network.filter(|network| network.bodies().is_empty())
 }
 
 /// Returns the length of the difference of the momenta of particles that are not pinned (kg m/s).

@@ -1,31 +1,21 @@
 //! Masses and springs alone, with the forces of a course's program. They share no code with the
 //! solvers, and make the usual mistakes on request.
 
-use a3_core::{Scene, SpringKind};
+use a3_core::{Network, Scene, SpringKind};
 use a3_scenes::List;
 
-use super::constant::{Change, Constant, Mistake};
+use super::constant::{CONSTANTS, Change, Constant, Mistake};
 
 /// Vector of a particle.
-type Triple = [f64; 3];
-
-/// Spring of a plain network.
-struct PlainSpring {
-    ends: [usize; 2],
-    stiffness: f64,
-    rest_length: f64,
-    damping: f64,
-    kind: SpringKind,
-}
+pub type Triple = [f64; 3];
 
 /// Masses and springs, with the state at the start.
 pub struct Plain {
-    mass: Vec<f64>,
+    pub list: List,
+    /// Kind of each spring.
+    kinds: Vec<SpringKind>,
+    /// Whether each particle is pinned.
     pinned: Vec<bool>,
-    springs: Vec<PlainSpring>,
-    gravity: Triple,
-    drag: f64,
-    pub start: [Vec<Triple>; 2],
 }
 
 impl Plain {
@@ -34,107 +24,78 @@ impl Plain {
     /// # Errors
     /// The scene has other parts.
     pub fn of(scene: &Scene) -> Result<Self, String> {
-        let list = List::in_flight(scene)?;
-        let network = scene.model.network().into_iter();
-        let kinds = network.flat_map(|network| network.springs().map(|spring| spring.kind));
-        let springs = list.springs.iter().zip(kinds);
-        let springs = springs.map(
-            |(&(i, j, stiffness, rest_length, damping), kind)| PlainSpring {
-                ends: [i, j],
-                stiffness,
-                rest_length,
-                damping,
-                kind,
-            },
-        );
+        let (list, network) = (List::in_flight(scene)?, scene.model.network().into_iter());
+        let pinned = (0..list.mass.len()).map(|i| list.pinned.contains(&i));
         Ok(Self {
-            pinned: (0..list.mass.len())
-                .map(|i| list.pinned.contains(&i))
+            pinned: pinned.collect(),
+            kinds: network
+                .flat_map(Network::springs)
+                .map(|it| it.kind)
                 .collect(),
-            springs: springs.collect(),
-            gravity: list.gravity,
-            drag: list.drag,
-            start: [list.positions, list.velocities],
-            mass: list.mass,
+            list,
         })
-    }
-
-    /// Returns the number of particles.
-    pub fn particles(&self) -> usize {
-        self.mass.len()
     }
 
     /// Returns whether forces depend on velocities.
     pub fn is_damped(&self) -> bool {
-        self.drag > 0.0 || self.springs.iter().any(|spring| spring.damping > 0.0)
-    }
-
-    /// Returns whether there is drag.
-    pub fn has_drag(&self) -> bool {
-        self.drag > 0.0
+        self.list.drag > 0.0 || self.list.springs.iter().any(|spring| spring.4 > 0.0)
     }
 
     /// Returns all values of a constant.
-    fn values(&self, constant: Constant) -> Box<dyn Iterator<Item = f64> + '_> {
-        let springs = self.springs.iter();
+    fn values(&self, constant: Constant) -> Vec<f64> {
         let length = |v: &Triple| dot(*v, *v).sqrt();
+        let (list, springs) = (&self.list, self.list.springs.iter());
         match constant {
-            Constant::Gravity => Box::new([length(&self.gravity)].into_iter()),
-            Constant::Stiffness => Box::new(springs.map(|spring| spring.stiffness)),
-            Constant::RestLength => Box::new(springs.map(|spring| spring.rest_length)),
-            Constant::Damping => Box::new(springs.map(|spring| spring.damping)),
-            Constant::Drag => Box::new([self.drag].into_iter()),
-            Constant::Mass => Box::new(self.mass.iter().copied()),
-            Constant::Start => Box::new(self.start[1].iter().map(length)),
-            Constant::Springs | Constant::Velocities => Box::new([].into_iter()),
+            Constant::Gravity => vec![length(&list.gravity)],
+            Constant::Stiffness => springs.map(|spring| spring.2).collect(),
+            Constant::RestLength => springs.map(|spring| spring.3).collect(),
+            Constant::Damping => springs.map(|spring| spring.4).collect(),
+            Constant::Drag => vec![list.drag],
+            Constant::Mass => list.mass.clone(),
+            Constant::Start => list.velocities.iter().map(length).collect(),
+            Constant::Springs | Constant::Velocities => vec![],
         }
     }
 
     /// Returns the changes of constants that change anything in this network, with the values of
     /// the scene.
-    pub fn changes(&self) -> Vec<Mistake> {
-        let of = |constant| {
-            let mut values = self.values(constant);
-            let first = values.next();
-            let is_one = constant != Constant::Start && values.all(|value| Some(value) == first);
-            let own = first.filter(|_| is_one);
+    pub fn changes(&self) -> impl Iterator<Item = Mistake> {
+        let all = CONSTANTS.iter().map(|&(constant, ..)| {
+            let values = self.values(constant);
+            let is_one = constant != Constant::Start && values.iter().all(|it| *it == values[0]);
             Mistake::Constant(Change {
                 constant,
                 factor: 1.0,
-                own,
+                own: values.first().copied().filter(|_| is_one),
             })
-        };
-        let all = Constant::ALL.into_iter().map(of);
-        all.filter(|change| self.can_have(*change)).collect()
+        });
+        all.filter(|change| self.can_have(*change))
     }
 
     /// Returns whether a mistake changes anything in this network.
     pub fn can_have(&self, mistake: Mistake) -> bool {
-        let pulls = self.gravity.iter().any(|g| *g != 0.0);
-        let has_unit_masses = self.mass.iter().all(|m| *m == 1.0);
-        let damps = self.springs.iter().any(|spring| spring.damping > 0.0);
-        let has = |kind| self.springs.iter().any(|spring| spring.kind == kind);
-        let (elastic, stretches) = (
-            !self.springs.is_empty(),
-            self.springs.iter().any(|spring| spring.rest_length > 0.0),
-        );
+        let list = &self.list;
+        let any = |constant| self.values(constant).iter().any(|value| *value > 0.0);
+        let (elastic, damps) = (!list.springs.is_empty(), any(Constant::Damping));
+        let pulls = list.gravity.iter().any(|g| *g != 0.0);
+        let has_unit_masses = list.mass.iter().all(|m| *m == 1.0);
         match mistake {
             Mistake::Constant(change) => match change.constant {
                 Constant::Springs => damps,
-                Constant::Mass => elastic || self.drag > 0.0,
+                Constant::Mass => elastic || list.drag > 0.0,
                 Constant::Velocities => true,
-                constant => self.values(constant).any(|value| value != 0.0),
+                constant => self.values(constant).iter().any(|value| *value != 0.0),
             },
             Mistake::GravityAsForce => pulls && !has_unit_masses,
-            Mistake::StretchAsRatio => stretches,
+            Mistake::StretchAsRatio => any(Constant::RestLength),
             Mistake::NotNormalised | Mistake::FirstEndOnly | Mistake::SecondEndOnly => elastic,
             Mistake::DampingAcross => damps,
-            Mistake::DragPerMass => self.drag > 0.0 && !has_unit_masses,
+            Mistake::DragPerMass => list.drag > 0.0 && !has_unit_masses,
             Mistake::UnitMasses => !has_unit_masses,
             Mistake::ForcesKept => elastic || pulls,
             Mistake::PinsMove => self.pinned.contains(&true),
-            Mistake::NoShearSprings => has(SpringKind::Shear),
-            Mistake::NoBendSprings => has(SpringKind::Bend),
+            Mistake::NoShearSprings => self.kinds.contains(&SpringKind::Shear),
+            Mistake::NoBendSprings => self.kinds.contains(&SpringKind::Bend),
         }
     }
 }
@@ -158,7 +119,7 @@ impl<'a> Forces<'a> {
             mistake,
             without_drag: false,
             is_single,
-            kept: vec![[0.0; 3]; plain.particles()],
+            kept: vec![[0.0; 3]; plain.pinned.len()],
         }
     }
 
@@ -185,12 +146,12 @@ impl<'a> Forces<'a> {
     }
 
     fn mass(&self, i: usize) -> f64 {
-        self.rounded(self.factor(Constant::Mass) * self.plain.mass[i])
+        self.rounded(self.factor(Constant::Mass) * self.plain.list.mass[i])
     }
 
     /// Returns the rate at which drag slows a particle down (1/s).
     pub fn drag_rate(&self, i: usize) -> f64 {
-        self.factor(Constant::Drag) * self.plain.drag / self.mass(i)
+        self.factor(Constant::Drag) * self.plain.list.drag / self.mass(i)
     }
 
     /// Accelerations (m/s2) of all particles, 0 for those that are held.
@@ -205,11 +166,8 @@ impl<'a> Forces<'a> {
             _ => self.mass(i),
         };
         let of = |(i, force): (usize, &Triple)| {
-            if self.holds(i) {
-                [0.0; 3]
-            } else {
-                force.map(|f| self.rounded(f / mass(i)))
-            }
+            let held = self.holds(i).then_some([0.0; 3]);
+            held.unwrap_or_else(|| force.map(|f| self.rounded(f / mass(i))))
         };
         let all = forces.iter().enumerate().map(of).collect();
         self.kept = forces;
@@ -223,10 +181,10 @@ impl<'a> Forces<'a> {
         let stiffness = springs * self.factor(Constant::Stiffness);
         let damping = springs * self.factor(Constant::Damping);
         let rest_length = self.factor(Constant::RestLength);
-        for spring in &self.plain.springs {
-            let [i, j] = spring.ends;
-            if is(Mistake::NoShearSprings) && spring.kind == SpringKind::Shear
-                || is(Mistake::NoBendSprings) && spring.kind == SpringKind::Bend
+        let springs = self.plain.list.springs.iter().zip(&self.plain.kinds);
+        for (&(i, j, own_stiffness, own_length, own_damping), kind) in springs {
+            if is(Mistake::NoShearSprings) && *kind == SpringKind::Shear
+                || is(Mistake::NoBendSprings) && *kind == SpringKind::Bend
             {
                 continue;
             }
@@ -236,8 +194,8 @@ impl<'a> Forces<'a> {
                 continue;
             }
             let along = apart.map(|d| d / length);
-            let rest = self.rounded(rest_length * spring.rest_length);
-            let mut pull = self.rounded(stiffness * spring.stiffness) * (length - rest);
+            let rest = self.rounded(rest_length * own_length);
+            let mut pull = self.rounded(stiffness * own_stiffness) * (length - rest);
             if is(Mistake::StretchAsRatio) && rest > 0.0 {
                 pull /= rest;
             }
@@ -247,16 +205,10 @@ impl<'a> Forces<'a> {
             let mut force = along.map(|u| pull * u);
             let faster: Triple = std::array::from_fn(|a| v[i][a] - v[j][a]);
             let rate = dot(faster, along);
+            let across = is(Mistake::DampingAcross);
             for a in 0..3 {
-                force[a] += damping
-                    * spring.damping
-                    * if is(Mistake::DampingAcross) {
-                        faster[a]
-                    } else {
-                        rate * along[a]
-                    };
-            }
-            for a in 0..3 {
+                let damped = if across { faster[a] } else { rate * along[a] };
+                force[a] += damping * own_damping * damped;
                 if !is(Mistake::SecondEndOnly) {
                     forces[i][a] -= force[a];
                 }
@@ -268,19 +220,16 @@ impl<'a> Forces<'a> {
         let gravity = self.factor(Constant::Gravity);
         for (i, force) in forces.iter_mut().enumerate() {
             let mass = self.mass(i);
-            let weight = if is(Mistake::GravityAsForce) {
-                1.0
-            } else {
-                mass
-            };
-            let mut drag = self.factor(Constant::Drag) * self.plain.drag;
+            let as_force = is(Mistake::GravityAsForce);
+            let weight = if as_force { 1.0 } else { mass };
+            let mut drag = self.factor(Constant::Drag) * self.plain.list.drag;
             if self.without_drag {
                 drag = 0.0;
             } else if is(Mistake::DragPerMass) {
                 drag *= mass;
             }
             for a in 0..3 {
-                let fall = self.rounded(gravity * self.plain.gravity[a]);
+                let fall = self.rounded(gravity * self.plain.list.gravity[a]);
                 force[a] += weight * fall - drag * v[i][a];
             }
         }

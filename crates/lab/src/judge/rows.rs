@@ -36,28 +36,26 @@ impl<'a> Rows<'a> {
         let count = states.times.iter().take_while(|t| **t <= end).count();
         let times = &states.times[..count];
         if times.last().is_none_or(|last| *last <= 0.0) {
-            if let Some(t) = states.not_finite_at {
-                return Err(format!(
-                    "its numbers are not finite from {t} s on, the first after the start"
-                ));
-            }
-            return Err(format!(
-                "it has no state between 0 and {until} s: there is nothing to judge"
-            ));
+            return Err(match states.not_finite_at {
+                Some(t) => {
+                    format!("its numbers are not finite from {t} s on, the first after the start")
+                }
+                None => {
+                    format!("it has no state between 0 and {until} s: there is nothing to judge")
+                }
+            });
         }
         let rounding = states.digits[0].rounding(until);
         let known = step.and_then(|step| Grid::of_step(times, rounding, step));
         let meets = |grid: &Grid| {
-            let meeting = |step| grid.meeting(step);
-            step.is_none_or(|step| meeting(step).is_some_and(|[points, _]| grid.meets(points)))
+            let meeting = step.and_then(|step| grid.meeting(step));
+            step.is_none() || meeting.is_some_and(|[points, _]| grid.meets(points))
         };
         let grid = known.or_else(|| Grid::of(times, rounding).filter(meets));
         let numbers = count * states.positions[0].len();
         let every = round(numbers.div_ceil(MAX_NUMBERS).max(count.div_ceil(MAX_ROWS)));
-        let is_kept = |k: &usize| {
-            let grid = grid.as_ref();
-            grid.is_none_or(|grid| grid.numbers[*k] % every as u64 == 0)
-        };
+        let grid_ends = |grid: &Grid, k: usize| grid.numbers[k].is_multiple_of(every as u64);
+        let is_kept = |k: &usize| grid.as_ref().is_none_or(|grid| grid_ends(grid, *k));
         let first = (0..every.min(count)).find(is_kept).unwrap_or(0);
         let kept: Vec<_> = (first..count).step_by(every).collect();
         let grid = grid.map(|grid| if every > 1 { grid.of_some(&kept) } else { grid });
@@ -134,18 +132,19 @@ pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     (squares.sum::<f64>() / (a.len() as f64 / 3.0)).sqrt()
 }
 
+/// Returns the distances between two states' vectors, particle by particle.
+fn distances(a: &[f64], b: &[f64]) -> impl Iterator<Item = f64> {
+    let n = a.len() / 3;
+    let square =
+        move |i: usize| (0..3).map(move |axis| (a[axis * n + i] - b[axis * n + i]).powi(2));
+    (0..n).map(move |i| square(i).sum::<f64>().sqrt())
+}
+
 /// Returns the particle that is farthest from its place, and its distance (m).
 pub fn farthest(a: &[f64], b: &[f64]) -> (usize, f64) {
-    let n = a.len() / 3;
-    let apart = |i: usize| {
-        let squares = (0..3).map(|axis| (a[axis * n + i] - b[axis * n + i]).powi(2));
-        squares.sum::<f64>().sqrt()
-    };
-    let all = (0..n).map(|i| (i, apart(i)));
-    all.fold(
-        (0, 0.0),
-        |most, next| if next.1 > most.1 { next } else { most },
-    )
+    let farther =
+        |most: (usize, f64), next: (usize, f64)| if next.1 > most.1 { next } else { most };
+    distances(a, b).enumerate().fold((0, 0.0), farther)
 }
 
 /// Coordinates of particles, column-major.
@@ -194,21 +193,16 @@ pub fn difference(scene: &Scene, rows: &Rows) -> Option<Difference> {
         } else if let Some(unit) = unit(start, own, near) {
             Difference::Unit(unit)
         } else {
-            let away = |i: &usize| {
-                let squares = (0..3).map(|axis| (start[axis * n + i] - own[axis * n + i]).powi(2));
-                squares.sum::<f64>().sqrt() > near
-            };
-            Difference::Positions((0..n).filter(away).count(), far)
+            let away = distances(start, own).filter(|distance| *distance > near);
+            Difference::Positions(away.count(), far)
         });
     }
     let has_velocities = scene.model.network().is_some();
     let velocities = rows.velocities(0).filter(|_| has_velocities)?;
     let given = &scene.state[3 * n..6 * n];
     let (i, far) = farthest(given, velocities);
-    let largest = given
-        .iter()
-        .chain(velocities)
-        .fold(1.0, |most: f64, v| most.max(v.abs()));
+    let both = given.iter().chain(velocities);
+    let largest = both.fold(1.0, |most: f64, v| most.max(v.abs()));
     (far > 1e-6 * largest + 2.0 * rows.rounding(0)).then_some(Difference::Velocities(i, far))
 }
 
@@ -244,9 +238,8 @@ fn unit(start: &[f64], own: &[f64], near: f64) -> Option<&'static str> {
         distance(start, &scaled) <= near
     };
     let largest = start.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let found = UNITS
-        .into_iter()
-        .find(|unit| largest > 0.0 && in_unit(unit));
+    let mut known = UNITS.into_iter().filter(|_| largest > 0.0);
+    let found = known.find(in_unit);
     found.map(|(name, _)| name)
 }
 
@@ -254,10 +247,6 @@ fn unit(start: &[f64], own: &[f64], near: f64) -> Option<&'static str> {
 pub fn with_y_up(x: &[f64], sign: f64) -> Vec<f64> {
     let n = x.len() / 3;
     let depth = x[n..2 * n].iter().map(|y| sign * y);
-    x[..n]
-        .iter()
-        .chain(&x[2 * n..])
-        .copied()
-        .chain(depth)
-        .collect()
+    let level = x[..n].iter().chain(&x[2 * n..]).copied();
+    level.chain(depth).collect()
 }

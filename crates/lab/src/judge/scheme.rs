@@ -1,150 +1,154 @@
 //! Schemes of a step that courses ask for, and those that a slip makes of them.
 
 use super::constant::Constant;
-use super::plain::{Forces, Plain};
-
-/// Vector of a particle.
-type Triple = [f64; 3];
+use super::plain::{Forces, Plain, Triple};
 
 /// Scheme of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scheme {
-    Euler,
-    Symplectic,
-    Trapezoid,
-    Midpoint,
-    Rk4,
-    /// Kick, drift, kick; the second kick takes forces at the velocity after the first.
-    Verlet,
-    /// The same, with forces at the velocity that the first kick predicts for the end.
-    VerletPredicted,
-    DriftKickDrift,
-    /// x2 = 2 x1 - x0 + h2 a1, with forces at the velocity (x1 - x0) / h.
-    Stormer,
-    ImplicitDrag,
-    PositionFirst,
-    /// x1 = x0 + h v0 + h2/2 a0 and v1 = v0 + h a0.
-    Taylor,
-    VerletOldVelocity,
-    TrapezoidOldVelocity,
-    MidpointOldVelocity,
-    Rk4FirstTwice,
-    Rk4HalfLast,
-    Rk4EqualWeights,
-    SweepVelocityFirst,
-    SweepPositionFirst,
+#[derive(Debug, PartialEq)]
+pub struct Scheme {
+    /// Name of the scheme.
+    pub title: &'static str,
+    /// Slip that the title does not tell, in a few words, which follow "with".
+    pub slip: Option<&'static str>,
+    /// Question to the author, if the scheme is seldom meant.
+    pub question: Option<&'static str>,
+    /// Forces without which the scheme is the same as one before it.
+    needs: Needs,
+    steps: Steps,
 }
 
+/// Forces that depend on velocities.
+#[derive(Debug, PartialEq)]
+enum Needs {
+    None,
+    Damping,
+    Drag,
+}
+
+/// How a scheme takes a step.
+#[derive(Debug, PartialEq)]
+enum Steps {
+    /// Runge-Kutta: where each stage after the first is, with the stage (from 1) whose rates lead
+    /// there; the weights of all; and the velocity at which their forces are taken.
+    Stages(&'static [(f64, usize)], &'static [f64], At),
+    /// Kicks and drifts over shares of the step, and the velocity at which the forces of kicks
+    /// after the first are taken.
+    Parts(&'static [Part], At),
+    /// A kick, and a drift at the velocity after it. The first kick of a run is over this share of
+    /// a step: half of one in x2 = 2 x1 - x0 + h2 a1, with forces at the velocity (x1 - x0) / h.
+    KickDrift(f64),
+    /// A kick that is divided by 1 + h c / m, and a drift.
+    ImplicitDrag,
+    /// x1 = x0 + h v0 + h2/2 a0 and v1 = v0 + h a0.
+    Taylor,
+    /// Kick and drift of one particle after another, the drift first if so.
+    Sweep(bool),
+}
+
+/// Part of a step, over a share of it.
+#[derive(Debug, PartialEq)]
+enum Part {
+    Kick(f64),
+    Drift(f64),
+}
+
+/// Velocity at which forces are taken.
+#[derive(Debug, PartialEq)]
+enum At {
+    Present,
+    /// That which the first kick predicts for the end of the step.
+    Predicted,
+    Old,
+}
+
+use Part::{Drift, Kick};
+use Steps::{ImplicitDrag, KickDrift, Parts, Stages, Sweep, Taylor};
+
+const HEUN: &str = "explicit trapezoid (Heun)";
+const MIDPOINT: &str = "explicit midpoint";
+const RK4: &str = "classical Runge-Kutta";
+const VERLET: &str = "velocity Verlet";
+/// Stages of the classical method, and its weights.
+const RK4_STAGES: &[(f64, usize)] = &[(0.5, 1), (0.5, 2), (1.0, 3)];
+const SIXTHS: &[f64] = &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
+const KICK_DRIFT_KICK: &[Part] = &[Kick(0.5), Drift(1.0), Kick(0.5)];
+const OLD_VELOCITY: Option<&str> = Some("the second evaluation at the old velocity");
+const WHICH_VELOCITY: Option<&str> =
+    Some("is the second evaluation at the old velocity? It belongs to the predicted one");
+const ALL_FORCES_FIRST: Option<&str> =
+    Some("does each particle move before the forces on the next are taken? All forces come first");
+
+/// Row of a scheme that serves all networks, and has no slip.
+const PLAIN: Scheme = Scheme {
+    title: "",
+    slip: None,
+    question: None,
+    needs: Needs::None,
+    steps: Taylor,
+};
+
+/// All schemes: first those of textbooks, then those with a question.
+#[rustfmt::skip]
+pub static SCHEMES: [Scheme; 20] = [
+    Scheme { title: "explicit Euler", steps: Stages(&[], &[1.0], At::Present), ..PLAIN },
+    Scheme { title: "symplectic Euler", steps: KickDrift(1.0), ..PLAIN },
+    Scheme { title: HEUN, steps: Stages(&[(1.0, 1)], &[0.5, 0.5], At::Present), ..PLAIN },
+    Scheme { title: MIDPOINT, steps: Stages(&[(0.5, 1)], &[0.0, 1.0], At::Present), ..PLAIN },
+    Scheme { title: RK4, steps: Stages(RK4_STAGES, SIXTHS, At::Present), ..PLAIN },
+    Scheme { title: VERLET, steps: Parts(KICK_DRIFT_KICK, At::Present), ..PLAIN },
+    Scheme { title: "velocity Verlet with a predicted velocity in the forces",
+             needs: Needs::Damping, steps: Parts(KICK_DRIFT_KICK, At::Predicted), ..PLAIN },
+    Scheme { title: "leapfrog (drift, kick, drift)",
+             steps: Parts(&[Drift(0.5), Kick(1.0), Drift(0.5)], At::Present), ..PLAIN },
+    Scheme { title: "Störmer's method", needs: Needs::Damping, steps: KickDrift(0.5), ..PLAIN },
+    Scheme { title: "symplectic Euler with implicit drag",
+             needs: Needs::Drag, steps: ImplicitDrag, ..PLAIN },
+    Scheme { title: "symplectic Euler, positions first",
+             question: Some("are the forces taken at the new positions? Explicit Euler takes them \
+                             at the old ones"),
+             steps: Parts(&[Drift(1.0), Kick(1.0)], At::Present), ..PLAIN },
+    Scheme { title: "explicit Euler with h²/2 a in the positions",
+             question: Some("is h²/2 a meant in the positions? The order stays 1"), ..PLAIN },
+    Scheme { title: VERLET, slip: Some("forces at the end of a step at its old velocity"),
+             question: Some("are drag and damping at the end of a step taken at the old velocity? \
+                             The order is 1 then"),
+             needs: Needs::Damping, steps: Parts(KICK_DRIFT_KICK, At::Old) },
+    Scheme { title: HEUN, slip: OLD_VELOCITY, question: WHICH_VELOCITY,
+             needs: Needs::Damping, steps: Stages(&[(1.0, 1)], &[0.5, 0.5], At::Old) },
+    Scheme { title: MIDPOINT, slip: OLD_VELOCITY, question: WHICH_VELOCITY,
+             needs: Needs::Damping, steps: Stages(&[(0.5, 1)], &[0.0, 1.0], At::Old) },
+    Scheme { title: RK4, slip: Some("k3 computed from k1"),
+             question: Some("is k3 computed from k2? It is computed from k1 here"),
+             steps: Stages(&[(0.5, 1), (0.5, 1), (1.0, 3)], SIXTHS, At::Present), ..PLAIN },
+    Scheme { title: RK4, slip: Some("k4 half a step ahead"),
+             question: Some("is k4 a whole step ahead? It is half a step ahead here"),
+             steps: Stages(&[(0.5, 1), (0.5, 2), (0.5, 3)], SIXTHS, At::Present), ..PLAIN },
+    Scheme { title: RK4, slip: Some("equal weights"),
+             question: Some("are the weights 1/6, 1/3, 1/3, 1/6? They are equal here"),
+             steps: Stages(RK4_STAGES, &[0.25; 4], At::Present), ..PLAIN },
+    Scheme { title: "symplectic Euler, particle by particle",
+             question: ALL_FORCES_FIRST, steps: Sweep(false), ..PLAIN },
+    Scheme { title: "symplectic Euler, positions first, particle by particle",
+             question: ALL_FORCES_FIRST, steps: Sweep(true), ..PLAIN },
+];
+
 impl Scheme {
-    /// All schemes: first those of textbooks, then those with a question.
-    pub const ALL: [Self; 20] = [
-        Self::Euler,
-        Self::Symplectic,
-        Self::Trapezoid,
-        Self::Midpoint,
-        Self::Rk4,
-        Self::Verlet,
-        Self::VerletPredicted,
-        Self::DriftKickDrift,
-        Self::Stormer,
-        Self::ImplicitDrag,
-        Self::PositionFirst,
-        Self::Taylor,
-        Self::VerletOldVelocity,
-        Self::TrapezoidOldVelocity,
-        Self::MidpointOldVelocity,
-        Self::Rk4FirstTwice,
-        Self::Rk4HalfLast,
-        Self::Rk4EqualWeights,
-        Self::SweepVelocityFirst,
-        Self::SweepPositionFirst,
-    ];
-
-    /// Returns the name of the scheme.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Euler => "explicit Euler",
-            Self::Symplectic => "symplectic Euler",
-            Self::Trapezoid | Self::TrapezoidOldVelocity => "explicit trapezoid (Heun)",
-            Self::Midpoint | Self::MidpointOldVelocity => "explicit midpoint",
-            Self::Rk4 | Self::Rk4FirstTwice | Self::Rk4HalfLast | Self::Rk4EqualWeights => {
-                "classical Runge-Kutta"
-            }
-            Self::Verlet | Self::VerletOldVelocity => "velocity Verlet",
-            Self::VerletPredicted => "velocity Verlet with a predicted velocity in the forces",
-            Self::DriftKickDrift => "leapfrog (drift, kick, drift)",
-            Self::Stormer => "Störmer's method",
-            Self::ImplicitDrag => "symplectic Euler with implicit drag",
-            Self::PositionFirst => "symplectic Euler, positions first",
-            Self::Taylor => "explicit Euler with h²/2 a in the positions",
-            Self::SweepVelocityFirst => "symplectic Euler, particle by particle",
-            Self::SweepPositionFirst => "symplectic Euler, positions first, particle by particle",
-        }
-    }
-
-    /// Returns a slip that the title does not tell, in a few words, which follow "with".
-    pub fn slip(self) -> Option<&'static str> {
-        Some(match self {
-            Self::VerletOldVelocity => "forces at the end of a step at its old velocity",
-            Self::TrapezoidOldVelocity | Self::MidpointOldVelocity => {
-                "the second evaluation at the old velocity"
-            }
-            Self::Rk4FirstTwice => "k3 computed from k1",
-            Self::Rk4HalfLast => "k4 half a step ahead",
-            Self::Rk4EqualWeights => "equal weights",
-            _ => return None,
-        })
-    }
-
-    /// Returns the question to the author, if the scheme is seldom meant.
-    pub fn question(self) -> Option<&'static str> {
-        Some(match self {
-            Self::PositionFirst => {
-                "are the forces taken at the new positions? Explicit Euler takes them at the old ones"
-            }
-            Self::Taylor => "is h²/2 a meant in the positions? The order stays 1",
-            Self::VerletOldVelocity => {
-                "are drag and damping at the end of a step taken at the old velocity? The order is 1 then"
-            }
-            Self::TrapezoidOldVelocity | Self::MidpointOldVelocity => {
-                "is the second evaluation at the old velocity? It belongs to the predicted one"
-            }
-            Self::Rk4FirstTwice => "is k3 computed from k2? It is computed from k1 here",
-            Self::Rk4HalfLast => "is k4 a whole step ahead? It is half a step ahead here",
-            Self::Rk4EqualWeights => "are the weights 1/6, 1/3, 1/3, 1/6? They are equal here",
-            Self::SweepVelocityFirst | Self::SweepPositionFirst => {
-                "does each particle move before the forces on the next are taken? All forces come first"
-            }
-            _ => return None,
-        })
-    }
-
     /// Returns the number of evaluations in a step of that many particles.
-    pub fn evaluations(self, particles: usize) -> usize {
-        match self {
-            Self::Trapezoid
-            | Self::Midpoint
-            | Self::Verlet
-            | Self::VerletPredicted
-            | Self::TrapezoidOldVelocity
-            | Self::MidpointOldVelocity
-            | Self::VerletOldVelocity => 2,
-            Self::Rk4 | Self::Rk4FirstTwice | Self::Rk4HalfLast | Self::Rk4EqualWeights => 4,
-            Self::SweepVelocityFirst | Self::SweepPositionFirst => particles,
-            _ => 1,
+    pub fn evaluations(&self, particles: usize) -> usize {
+        match self.steps {
+            Stages(_, weights, _) => weights.len(),
+            Parts(parts, _) => parts.iter().filter(|it| matches!(it, Kick(_))).count(),
+            KickDrift(_) | ImplicitDrag | Taylor => 1,
+            Sweep(_) => particles,
         }
     }
 
     /// Returns whether the scheme differs from all before it on a network.
-    pub fn serves(self, plain: &Plain) -> bool {
-        match self {
-            Self::VerletPredicted
-            | Self::Stormer
-            | Self::VerletOldVelocity
-            | Self::TrapezoidOldVelocity
-            | Self::MidpointOldVelocity => plain.is_damped(),
-            Self::ImplicitDrag => plain.has_drag(),
-            _ => true,
+    pub fn serves(&self, plain: &Plain) -> bool {
+        match self.needs {
+            Needs::None => true,
+            Needs::Damping => plain.is_damped(),
+            Needs::Drag => plain.list.drag > 0.0,
         }
     }
 }
@@ -152,25 +156,33 @@ impl Scheme {
 /// A run of a scheme.
 pub struct PlainRun<'a> {
     forces: Forces<'a>,
-    scheme: Scheme,
+    scheme: &'static Scheme,
     /// Step (s).
     h: f64,
     /// Whether no step was taken yet.
     is_new: bool,
-    x: Vec<Triple>,
-    v: Vec<Triple>,
+    /// Positions (m).
+    pub x: Vec<Triple>,
+    /// Velocities (m/s).
+    pub v: Vec<Triple>,
 }
 
 impl<'a> PlainRun<'a> {
     /// Creates a run from a state of positions (m) and velocities (m/s).
-    pub fn new(mut forces: Forces<'a>, scheme: Scheme, h: f64, [x, v]: [Vec<Triple>; 2]) -> Self {
-        forces.without_drag = scheme == Scheme::ImplicitDrag;
+    pub fn new(
+        mut forces: Forces<'a>,
+        scheme: &'static Scheme,
+        h: f64,
+        [x, v]: [Vec<Triple>; 2],
+    ) -> Self {
+        forces.without_drag = scheme.steps == ImplicitDrag;
         let start = forces.factor(Constant::Start);
         let v = v.into_iter().map(|v| v.map(|v| start * v)).collect();
+        let h = forces.rounded(h);
         let mut run = Self {
-            h: forces.rounded(h),
             forces,
             scheme,
+            h,
             is_new: true,
             x,
             v,
@@ -188,16 +200,6 @@ impl<'a> PlainRun<'a> {
         }
     }
 
-    /// Returns the positions (m).
-    pub fn positions(&self) -> &[Triple] {
-        &self.x
-    }
-
-    /// Returns the velocities (m/s).
-    pub fn velocities(&self) -> &[Triple] {
-        &self.v
-    }
-
     /// Takes a step.
     pub fn step(&mut self) {
         let (h, forces) = (self.h, &mut self.forces);
@@ -209,146 +211,76 @@ impl<'a> PlainRun<'a> {
             v.into_iter().map(|v| v.map(|v| slower * v)).collect()
         };
         let (x0, v0) = (std::mem::take(&mut self.x), std::mem::take(&mut self.v));
-        let [x1, v1] = match self.scheme {
-            Scheme::Euler => {
-                let a = forces.accelerations(&x0, &v0);
-                [moved(&x0, h, &v0), moved(&v0, h, &a)]
+        let [x1, v1] = match self.scheme.steps {
+            Stages(ahead, weights, ref at) => {
+                let mut rates = vec![(v0.clone(), forces.accelerations(&x0, &v0))];
+                for (share, from) in ahead {
+                    let (v, a) = &rates[from - 1];
+                    let (x, v) = (moved(&x0, share * h, v), moved(&v0, share * h, a));
+                    let a = forces.accelerations(&x, if *at == At::Old { &v0 } else { &v });
+                    rates.push((v, a));
+                }
+                let (mut x1, mut v1) = (x0, v0);
+                for ((v, a), weight) in rates.iter().zip(weights) {
+                    (x1, v1) = (moved(&x1, weight * h, v), moved(&v1, weight * h, a));
+                }
+                [x1, v1]
             }
-            Scheme::Symplectic | Scheme::Stormer => {
-                let a = forces.accelerations(&x0, &v0);
-                let starts = self.scheme == Scheme::Stormer && self.is_new;
-                let v1 = slowed(moved(&v0, if starts { 0.5 * h } else { h }, &a));
-                return self.take([moved(&x0, h, &v1), v1]);
+            Parts(parts, ref at) => {
+                let (mut x, mut v, mut seen) = (x0, v0.clone(), v0.clone());
+                for part in parts {
+                    match *part {
+                        Drift(share) => x = moved(&x, share * h, &v),
+                        Kick(share) => {
+                            let at_present = *at == At::Present;
+                            let a = forces.accelerations(&x, if at_present { &v } else { &seen });
+                            v = moved(&v, share * h, &a);
+                            if *at == At::Predicted {
+                                seen = moved(&v0, h, &a);
+                            }
+                        }
+                    }
+                }
+                [x, v]
             }
-            Scheme::ImplicitDrag => {
+            KickDrift(first) => {
                 let a = forces.accelerations(&x0, &v0);
-                let slower =
-                    |(i, v): (usize, Triple)| v.map(|v| v / (1.0 + h * forces.drag_rate(i)));
-                let v1: Vec<_> = moved(&v0, h, &a)
-                    .into_iter()
-                    .enumerate()
-                    .map(slower)
-                    .collect();
+                let share = if self.is_new { first } else { 1.0 };
+                let v1 = moved(&v0, share * h, &a);
+                [moved(&x0, h, &slowed(v1.clone())), v1]
+            }
+            ImplicitDrag => {
+                let mut v1 = moved(&v0, h, &forces.accelerations(&x0, &v0));
+                for (i, v) in v1.iter_mut().enumerate() {
+                    *v = v.map(|v| v / (1.0 + h * forces.drag_rate(i)));
+                }
                 [moved(&x0, h, &v1), v1]
             }
-            Scheme::PositionFirst => {
-                let x1 = moved(&x0, h, &v0);
-                let a = forces.accelerations(&x1, &v0);
+            Taylor => {
+                let a = forces.accelerations(&x0, &v0);
+                let x1 = moved(&moved(&x0, h, &v0), 0.5 * h * h, &a);
                 [x1, moved(&v0, h, &a)]
             }
-            Scheme::Taylor => {
-                let a = forces.accelerations(&x0, &v0);
-                [
-                    moved(&moved(&x0, h, &v0), 0.5 * h * h, &a),
-                    moved(&v0, h, &a),
-                ]
-            }
-            Scheme::Trapezoid | Scheme::TrapezoidOldVelocity => {
-                let a0 = forces.accelerations(&x0, &v0);
-                let v1 = moved(&v0, h, &a0);
-                let at = if self.scheme == Scheme::Trapezoid {
-                    &v1
-                } else {
-                    &v0
-                };
-                let a1 = forces.accelerations(&moved(&x0, h, &v0), at);
-                let mean = |y: &[Triple], f0: &[Triple], f1: &[Triple]| {
-                    moved(&moved(y, 0.5 * h, f0), 0.5 * h, f1)
-                };
-                [mean(&x0, &v0, &v1), mean(&v0, &a0, &a1)]
-            }
-            Scheme::Midpoint | Scheme::MidpointOldVelocity => {
-                let a0 = forces.accelerations(&x0, &v0);
-                let middle = moved(&v0, 0.5 * h, &a0);
-                let at = if self.scheme == Scheme::Midpoint {
-                    &middle
-                } else {
-                    &v0
-                };
-                let a = forces.accelerations(&moved(&x0, 0.5 * h, &v0), at);
-                [moved(&x0, h, &middle), moved(&v0, h, &a)]
-            }
-            Scheme::Rk4 => runge_kutta(forces, h, &x0, &v0, [0.5, 0.5, 1.0], [1, 2, 3], SIXTHS),
-            Scheme::Rk4FirstTwice => {
-                runge_kutta(forces, h, &x0, &v0, [0.5, 0.5, 1.0], [1, 1, 3], SIXTHS)
-            }
-            Scheme::Rk4HalfLast => runge_kutta(forces, h, &x0, &v0, [0.5; 3], [1, 2, 3], SIXTHS),
-            Scheme::Rk4EqualWeights => {
-                runge_kutta(forces, h, &x0, &v0, [0.5, 0.5, 1.0], [1, 2, 3], [0.25; 4])
-            }
-            Scheme::Verlet | Scheme::VerletPredicted | Scheme::VerletOldVelocity => {
-                let a0 = forces.accelerations(&x0, &v0);
-                let half = moved(&v0, 0.5 * h, &a0);
-                let x1 = moved(&x0, h, &half);
-                let a1 = match self.scheme {
-                    Scheme::Verlet => forces.accelerations(&x1, &half),
-                    Scheme::VerletPredicted => forces.accelerations(&x1, &moved(&v0, h, &a0)),
-                    _ => forces.accelerations(&x1, &v0),
-                };
-                [x1, moved(&half, 0.5 * h, &a1)]
-            }
-            Scheme::DriftKickDrift => {
-                let middle = moved(&x0, 0.5 * h, &v0);
-                let a = forces.accelerations(&middle, &v0);
-                let v1 = moved(&v0, h, &a);
-                [moved(&middle, 0.5 * h, &v1), v1]
-            }
-            Scheme::SweepVelocityFirst => sweep(forces, h, x0, v0, false),
-            Scheme::SweepPositionFirst => sweep(forces, h, x0, v0, true),
+            Sweep(drift_first) => sweep(forces, h, [x0, v0], drift_first),
         };
-        self.take([x1, slowed(v1)]);
-    }
-
-    /// Takes the state at the end of a step.
-    fn take(&mut self, state: [Vec<Triple>; 2]) {
-        [self.x, self.v] = state;
-        self.is_new = false;
+        (self.x, self.v, self.is_new) = (x1, slowed(v1), false);
         self.round();
     }
-}
-
-/// Weights of the classical method.
-const SIXTHS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
-
-/// Takes a step of a method with four stages: where each stage after the first is, the stage (from
-/// 1) whose rates lead there, and the weights of all.
-fn runge_kutta(
-    forces: &mut Forces,
-    h: f64,
-    x0: &[Triple],
-    v0: &[Triple],
-    ahead: [f64; 3],
-    from: [usize; 3],
-    weights: [f64; 4],
-) -> [Vec<Triple>; 2] {
-    let mut rates = vec![(v0.to_vec(), forces.accelerations(x0, v0))];
-    for (share, from) in ahead.into_iter().zip(from) {
-        let (v, a) = &rates[from - 1];
-        let (x, v) = (moved(x0, share * h, v), moved(v0, share * h, a));
-        let a = forces.accelerations(&x, &v);
-        rates.push((v, a));
-    }
-    let (mut x1, mut v1) = (x0.to_vec(), v0.to_vec());
-    for ((v, a), weight) in rates.iter().zip(weights) {
-        (x1, v1) = (moved(&x1, weight * h, v), moved(&v1, weight * h, a));
-    }
-    [x1, v1]
 }
 
 /// Moves particles one by one, each by forces of those that have moved already.
 fn sweep(
     forces: &mut Forces,
     h: f64,
-    mut x: Vec<Triple>,
-    mut v: Vec<Triple>,
-    positions_first: bool,
+    [mut x, mut v]: [Vec<Triple>; 2],
+    drift_first: bool,
 ) -> [Vec<Triple>; 2] {
     for i in 0..x.len() {
-        if positions_first {
+        if drift_first {
             x[i] = ahead(x[i], h, v[i]);
         }
         v[i] = ahead(v[i], h, forces.accelerations(&x, &v)[i]);
-        if !positions_first {
+        if !drift_first {
             x[i] = ahead(x[i], h, v[i]);
         }
     }

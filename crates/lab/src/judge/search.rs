@@ -3,10 +3,9 @@
 
 use a3_core::integrators::METHODS;
 
-use super::constant::Mistake;
-use super::grid::MIN_AT_STEPS;
-use super::grid::{Pace, paces};
-use super::scheme::Scheme;
+use super::constant::MISTAKES;
+use super::grid::{MIN_AT_STEPS, Pace, paces};
+use super::scheme::{SCHEMES, Scheme};
 use super::trial::{Compared, Judged, Start, Trial, Way};
 
 /// Least ratio of the distance moved to that at which rows agree in single precision.
@@ -67,12 +66,10 @@ struct Search<'a> {
     part: Option<Agreement>,
     /// Agreements of positions alone, in a file whose velocities are others.
     positions: Vec<Agreement>,
-    /// Longest and shortest step that was tried (s).
-    steps: [f64; 2],
     /// Whether the program is taken to compute in single precision.
     is_single: bool,
-    /// The last scheme that was tried in single precision, and what it is judged by.
-    single: Option<(Scheme, Pace, Judged<'a>)>,
+    /// What was found so far, with the longest and the shortest step.
+    result: Match,
 }
 
 /// Part of a search: ways, starts and paces, and whether rows are compared in single precision.
@@ -81,26 +78,25 @@ type Plan<'a> = (&'a [Way], &'a [Start], &'a [Pace], bool);
 /// Finds the method that the rows agree with. `None` if the monitor stopped it. `at_start`
 /// tells whether the first row is the start of the scene.
 pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
-    let Some([whole, between]) = paces(judged.rows.grid.as_ref(), judged.step) else {
+    let Some([whole, between]) = paces(judged.rows.grid.as_ref(), judged.course.step) else {
         return Some(Match::default());
     };
     let mut search = Search {
         judged,
         part: None,
         positions: vec![],
-        steps: [0.0, f64::INFINITY],
         is_single: false,
-        single: None,
+        result: Match {
+            steps: [0.0, f64::INFINITY],
+            ..Match::default()
+        },
     };
     let (correct, slips) = (search.correct(), search.slips());
     let is_scheme = |way: &Way| matches!(way, Way::Scheme(..));
     let schemes: Vec<_> = correct.iter().copied().filter(is_scheme).collect();
     let scene = &[Start::Scene][..];
-    let starts = [
-        Start::Ahead,
-        Start::Behind,
-        Start::Row(usize::from(at_start)),
-    ];
+    let row = Start::Row(usize::from(at_start));
+    let starts = [Start::Ahead, Start::Behind, row];
     let all = [&whole[..], &between].concat();
     let plans: [Plan; 6] = [
         (&correct, scene, &whole, false),
@@ -110,30 +106,23 @@ pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
         (&correct, &starts, &whole, false),
         (&slips, scene, &between, false),
     ];
-    for (ways, starts, paces, is_single) in plans {
-        search.is_single = is_single;
-        if is_single && !judged.rows.are_single() {
+    for plan in plans {
+        if plan.3 && !judged.rows.are_single() {
             continue;
         }
-        let found = search.agreements(ways, starts, paces)?;
+        let found = search.agreements(plan)?;
         if let Some((first, others)) = found.split_first() {
-            return Some(Match {
-                found: Some(*first),
-                also: others.to_vec(),
-                ..search.blank()
-            });
+            (search.result.found, search.result.also) = (Some(*first), others.to_vec());
+            return Some(search.result);
         }
         // So many rows do not agree by chance: the rest differs by rounding errors that grow.
         if search.part.is_some() {
             break;
         }
     }
-    let positions = search.positions.first().copied();
-    if let Some(found) = positions.or(search.part) {
-        return Some(Match {
-            found: Some(found),
-            ..search.blank()
-        });
+    search.result.found = search.positions.first().copied().or(search.part);
+    if search.result.found.is_some() {
+        return Some(search.result);
     }
     let is_few = |pace: &Pace| whole.len() == 1 || pace.is_one_of_few();
     let few: Vec<_> = whole.iter().copied().filter(is_few).collect();
@@ -142,79 +131,58 @@ pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
     let bound = nearest.map_or(far, |nearest| MUCH_NEARER * nearest.compared.distance);
     // A step that was guessed may be of a wrong neighbour.
     let is_sure = |pace: Pace| whole.len() == 1 || (pace.steps, pace.points) == (1, 1);
-    let nearest =
-        nearest.filter(|nearest| nearest.compared.distance < far && is_sure(nearest.trial.pace));
-    let suspect = search.nearest(&slips, &few[..1.min(few.len())], bound.min(far))?;
-    Some(Match {
-        nearest,
-        suspect,
-        ..search.blank()
-    })
+    let is_near = |it: &Agreement| it.compared.distance < far && is_sure(it.trial.pace);
+    search.result.nearest = nearest.filter(is_near);
+    search.result.suspect = search.nearest(&slips, &few[..1.min(few.len())], bound.min(far))?;
+    Some(search.result)
 }
 
 impl Search<'_> {
-    fn blank(&self) -> Match {
-        Match {
-            steps: self.steps,
-            ..Match::default()
-        }
-    }
-
     /// Returns all solvers of a3 that support the scene, and schemes of textbooks.
     fn correct(&self) -> Vec<Way> {
-        let scene = self.judged.scene;
-        let methods = METHODS
-            .iter()
-            .filter(|m| m.check(scene.model.system()).is_ok())
-            .filter(|m| !m.repeats_another(scene.model.system()));
-        let schemes = self.schemes(|scheme| scheme.question().is_none());
-        methods
-            .map(Way::Method)
-            .chain(schemes.map(|scheme| Way::Scheme(scheme, None)))
-            .collect()
+        let system = self.judged.scene().model.system();
+        let methods = METHODS.iter().filter(|m| m.check(system).is_ok());
+        let methods = methods.filter(|m| !m.repeats_another(system));
+        let schemes = self.schemes(false).map(|scheme| Way::Scheme(scheme, None));
+        methods.map(Way::Method).chain(schemes).collect()
     }
 
-    /// Schemes of textbooks with mistakes, and schemes that are mistakes.
+    /// Returns the schemes that are slips, and those of textbooks with each mistake.
     fn slips(&self) -> Vec<Way> {
-        let Some(plain) = self.judged.plain else {
+        let Some(plain) = self.judged.plain() else {
             return vec![];
         };
-        let mistakes = Mistake::ALL.into_iter();
+        let mistakes = MISTAKES.iter().map(|row| row.0);
         let mistakes = mistakes.filter(|mistake| plain.can_have(*mistake));
         let mistakes: Vec<_> = mistakes.chain(plain.changes()).collect();
-        let wrong = self.schemes(|scheme| scheme.question().is_some());
-        let right = self.schemes(|scheme| scheme.question().is_none());
-        let with = right.flat_map(|scheme| {
+        let with = self.schemes(false).flat_map(|scheme| {
             let each = mistakes.iter();
             each.map(move |mistake| Way::Scheme(scheme, Some(*mistake)))
         });
-        wrong
-            .map(|scheme| Way::Scheme(scheme, None))
-            .chain(with)
-            .collect()
+        let wrong = self.schemes(true).map(|scheme| Way::Scheme(scheme, None));
+        wrong.chain(with).collect()
     }
 
-    fn schemes(&self, is: impl Fn(Scheme) -> bool) -> impl Iterator<Item = Scheme> {
-        let plain = self.judged.plain;
-        Scheme::ALL.into_iter().filter(move |scheme| {
-            let n = self.judged.scene.model.particles();
+    /// Returns the schemes that serve the scene: those with a question, or those without.
+    fn schemes(&self, asked: bool) -> impl Iterator<Item = &'static Scheme> {
+        let (plain, n) = (self.judged.plain(), self.judged.scene().model.particles());
+        SCHEMES.iter().filter(move |scheme| {
             let is_cheap = scheme.evaluations(n) < n || n <= MAX_SWEPT;
-            is(*scheme) && is_cheap && plain.is_some_and(|plain| scheme.serves(plain))
+            let serves = plain.is_some_and(|plain| scheme.serves(plain));
+            scheme.question.is_some() == asked && is_cheap && serves
         })
     }
 
     /// Returns the ways that agree with all rows, at the largest step at which one does, or at a
     /// slightly smaller one at which it agrees much better. `None` if the monitor stopped it.
-    fn agreements(
-        &mut self,
-        ways: &[Way],
-        starts: &[Start],
-        paces: &[Pace],
-    ) -> Option<Vec<Agreement>> {
-        let (mut work, mut best, mut more) = (0.0, vec![], MORE_PARTS);
+    fn agreements(&mut self, (ways, starts, paces, is_single): Plan) -> Option<Vec<Agreement>> {
+        self.is_single = is_single;
+        let (mut best, mut more) = (vec![], MORE_PARTS);
+        let work = &self.judged.course.work;
+        work.set(0.0);
         for &pace in paces {
             let is_found = !best.is_empty() || self.part.is_some();
-            let is_enough = is_found && more == 0 || work > MAX_WORK;
+            let is_enough = is_found && more == 0 || work.get() > MAX_WORK;
             if is_enough && !pace.is_one_of_few() {
                 continue;
             }
@@ -222,26 +190,23 @@ impl Search<'_> {
             let mut found = vec![];
             for &start in starts {
                 for &way in ways {
-                    if !self.judged.monitor.go_on() {
+                    if !self.judged.course.monitor.go_on() {
                         return None;
                     }
                     let trial = Trial { way, pace, start };
-                    found.extend(self.agreement(trial, &mut work));
+                    found.extend(self.agreement(trial));
                 }
             }
             if !found.is_empty() && (best.is_empty() || self.are_better(&found, &best)) {
                 best = found;
             }
         }
-        let least = least(&best);
-        let rounding = self.judged.rounding(0);
-        let first = best
-            .iter()
-            .position(|a| a.compared.distance <= CLEARLY * least + rounding);
-        if let Some(first) = first {
+        let near = CLEARLY * least(&best) + self.judged.rounding(0);
+        let is_near = |agreement: &Agreement| agreement.compared.distance <= near;
+        if let Some(first) = best.iter().position(is_near) {
             best[..=first].rotate_right(1);
         }
-        best.retain(|agreement| agreement.compared.distance <= CLEARLY * least + rounding);
+        best.retain(is_near);
         Some(best)
     }
 
@@ -251,42 +216,30 @@ impl Search<'_> {
     }
 
     /// Returns the agreement of a trial with all rows, in the precision of the search.
-    fn agreement(&mut self, trial: Trial, work: &mut f64) -> Option<Agreement> {
-        let Way::Scheme(scheme, _) = trial.way else {
-            return self.agreement_by(self.judged, trial, work);
-        };
+    fn agreement(&mut self, trial: Trial) -> Option<Agreement> {
         if !self.is_single {
-            return self.agreement_by(self.judged, trial, work);
+            return self.agreement_by(self.judged, trial);
         }
-        let last = self.single.take();
-        let last = last.filter(|(of, pace, _)| (*of, *pace) == (scheme, trial.pace));
-        let (_, _, single) = if let Some(last) = last {
-            last
-        } else {
-            // A method that is far away is so in single precision, too.
-            let near = |_: usize, _: f64| NEAR_SINGLE * self.judged.motion;
-            let compared = self.judged.compare(trial, &near, work)?;
-            if compared.at_steps < MIN_AT_STEPS {
-                return None;
-            }
-            let noise = self.judged.noise(scheme, trial.pace, work);
-            let mut single = self.judged.clone();
-            single.noise = Some(noise?);
-            (scheme, trial.pace, single)
-        };
-        let found = self.agreement_by(&single, trial, work);
-        self.single = Some((scheme, trial.pace, single));
-        found
+        // A method that is far away is so in single precision, too.
+        let near = |_: usize, _: f64| NEAR_SINGLE * self.judged.motion;
+        let compared = self.judged.compare(trial, &near)?;
+        if compared.at_steps < MIN_AT_STEPS {
+            return None;
+        }
+        let mut single = self.judged.clone();
+        single.noise = Some(self.judged.noise(trial)?);
+        self.agreement_by(&single, trial)
     }
 
     /// Returns the agreement of a trial with all rows that are compared. One with many of them is
     /// remembered.
-    fn agreement_by(&mut self, judged: &Judged, trial: Trial, work: &mut f64) -> Option<Agreement> {
+    fn agreement_by(&mut self, judged: &Judged, trial: Trial) -> Option<Agreement> {
         let bound = |k: usize, moved: f64| judged.tolerance(k, moved);
         let step = judged.step_of(trial)?;
-        self.steps = [self.steps[0].max(step), self.steps[1].min(step)];
-        let trial = judged.fit(trial, &bound, work)?;
-        let compared = judged.compare(trial, &bound, work)?;
+        let [longest, shortest] = self.result.steps;
+        self.result.steps = [longest.max(step), shortest.min(step)];
+        let trial = judged.fit(trial, &bound)?;
+        let compared = judged.compare(trial, &bound)?;
         let (rows, last) = (judged.rows, judged.last());
         let ends = (compared.rows < rows.len()).then(|| rows.times[compared.rows.max(1) - 1]);
         let agreement = Agreement {
@@ -312,10 +265,8 @@ impl Search<'_> {
             if clear <= 1.0 || matches!(trial.start, Start::Row(row) if compared.rows <= row + 2) {
                 return None;
             }
-            if compared
-                .velocities
-                .is_some_and(|[apart, speed]| apart > MIN_APART * speed)
-            {
+            let are_others = |[apart, speed]: [f64; 2]| apart > MIN_APART * speed;
+            if compared.velocities.is_some_and(are_others) {
                 self.positions.push(agreement);
                 return None;
             }
@@ -332,23 +283,26 @@ impl Search<'_> {
     /// (m). `None` if the monitor stopped it.
     #[expect(clippy::option_option, reason = "stopped, or none below the bound")]
     fn nearest(&self, ways: &[Way], paces: &[Pace], bound: f64) -> Option<Option<Agreement>> {
-        let (mut nearest, mut least, mut work) = (None, bound, 0.0);
+        let (mut nearest, mut least) = (None, bound);
+        let work = &self.judged.course.work;
+        work.set(0.0);
         for &pace in paces {
-            if work > MAX_WORK {
+            if work.get() > MAX_WORK {
                 break;
             }
             for &way in ways {
-                if !self.judged.monitor.go_on() {
+                if !self.judged.course.monitor.go_on() {
                     return None;
                 }
                 let start = Start::Scene;
                 let trial = Trial { way, pace, start };
-                let Some(trial) = self.judged.fit(trial, &|_, _| least, &mut work) else {
+                let Some(trial) = self.judged.fit(trial, &|_, _| least) else {
                     continue;
                 };
-                let compared = self.judged.compare(trial, &|_, _| least, &mut work);
-                let whole = compared.filter(|compared| compared.rows == self.judged.rows.len());
-                if let Some(compared) = whole.filter(|compared| compared.distance < least) {
+                let compared = self.judged.compare(trial, &|_, _| least);
+                let is_better =
+                    |it: &Compared| it.rows == self.judged.rows.len() && it.distance < least;
+                if let Some(compared) = compared.filter(is_better) {
                     least = compared.distance;
                     nearest = Some(Agreement {
                         trial,
@@ -366,8 +320,6 @@ impl Search<'_> {
 
 /// Returns the least distance of several agreements (m); infinite without any.
 fn least(agreements: &[Agreement]) -> f64 {
-    let distances = agreements
-        .iter()
-        .map(|agreement| agreement.compared.distance);
+    let distances = agreements.iter().map(|it| it.compared.distance);
     distances.fold(f64::INFINITY, f64::min)
 }

@@ -1,15 +1,23 @@
-//! Trials: a method, or a scheme with a mistake, against the rows of a file.
+//! Trials on the course of a scene: a method, or a scheme with a mistake, against the rows of a
+//! file; and fits of a constant of the scene to these rows, by least squares.
 
+use std::cell::Cell;
+
+use a3_core::accuracy::{Horizon, Reference, horizon};
 use a3_core::integrators::METHODS;
 use a3_core::{Control, Method, Scene, Simulation};
+use a3_files::failure::Failure;
 use a3_files::monitor::Monitor;
 
-use super::constant::Mistake;
+use super::constant::{Change, Mistake};
 use super::grid::Pace;
 use super::plain::{Forces, Plain};
 use super::rows::{Rows, columns, distance};
 use super::scheme::{PlainRun, Scheme};
+use crate::chart::check_motion;
 
+/// Largest time that is judged (s).
+const MAX_TIME: f64 = 1000.0;
 /// Largest distance of rows that agree, over the distance moved until then.
 const AGREEMENT: f64 = 1e-9;
 /// Largest distance of rows that agree, over the size of the scene: its rounding errors.
@@ -27,6 +35,23 @@ const BEGINNING: f64 = 20.0;
 const MAX_WORK: f64 = 5e8;
 /// Work of a step of an implicit method, over an evaluation.
 const IMPLICIT_WORK: f64 = 25.0;
+/// Number of rows of the first fit. Each further one has several times as many, up to all.
+const FIRST_ROWS: usize = 3;
+const MORE_ROWS: usize = 4;
+/// Largest number of iterations of each fit.
+const MAX_ITERATIONS: usize = 8;
+/// Change of the factor over which a rate of change is taken.
+const DELTA: f64 = 1e-6;
+/// Change of the factor that ends the iterations.
+const SETTLED: f64 = 1e-14;
+/// Least effect of a constant, over the distance that agrees, that tells its value.
+const MIN_EFFECT: f64 = 100.0;
+/// Largest factor.
+const MAX_FACTOR: f64 = 100.0;
+/// Largest work of fits, in springs and particles that are visited.
+const MAX_WORK_OF_FITS: f64 = 2e8;
+/// Distance of rows from a fit to some of them, over that which agrees.
+const SLACK: f64 = 3.0;
 
 /// Way to compute a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,21 +59,28 @@ pub enum Way {
     /// Solver of a3.
     Method(&'static Method),
     /// Scheme on plain masses and springs.
-    Scheme(Scheme, Option<Mistake>),
+    Scheme(&'static Scheme, Option<Mistake>),
 }
 
 impl Way {
     /// Returns the name of the method.
     pub fn title(self) -> &'static str {
         match self {
+            // What its passes converge to is better known.
+            Self::Method(method) if method.name == "vbd" => {
+                "implicit Euler, solved fully, as by vertex block descent"
+            }
             Self::Method(method) => method.title,
-            Self::Scheme(scheme, _) => scheme.title(),
+            Self::Scheme(scheme, _) => scheme.title,
         }
     }
 
     /// Returns the name of the solver of a3 with the same title, if there is one. Apart from a slip
     /// or a mistake, this way takes the steps of that solver.
     pub fn solver(self) -> Option<&'static str> {
+        if let Self::Method(method) = self {
+            return Some(method.name);
+        }
         let is_it = |method: &&Method| method.title == self.title();
         METHODS.iter().find(is_it).map(|method| method.name)
     }
@@ -61,21 +93,15 @@ impl Way {
         }
     }
 
-    /// Returns the slip or the mistake that it makes, in words that follow "with".
-    pub fn slip(self) -> Option<String> {
+    /// Returns the slip or the mistake that it makes, in words that follow "with", and the question
+    /// to the author of a program that computes steps so.
+    pub fn slip(self) -> [Option<String>; 2] {
         match self {
-            Self::Scheme(_, Some(mistake)) => Some(mistake.words()),
-            Self::Scheme(scheme, None) => scheme.slip().map(String::from),
-            Self::Method(_) => None,
-        }
-    }
-
-    /// Returns the question to the author of a program that computes steps so.
-    pub fn question(self) -> Option<String> {
-        match self {
-            Self::Scheme(scheme, None) => scheme.question().map(String::from),
-            Self::Scheme(_, Some(mistake)) => Some(mistake.question()),
-            Self::Method(_) => None,
+            Self::Scheme(_, Some(mistake)) => mistake.words().map(Some),
+            Self::Scheme(scheme, None) => {
+                [scheme.slip, scheme.question].map(|it| it.map(Into::into))
+            }
+            Self::Method(_) => [None, None],
         }
     }
 }
@@ -119,34 +145,52 @@ pub struct Compared {
     pub velocities: Option<[f64; 2]>,
 }
 
-/// Scene and rows against which trials run.
-#[derive(Clone)]
-pub struct Judged<'a> {
+/// Scene with all that judgements of its files share.
+pub struct Course<'a> {
     /// Companion of the work, which may stop it.
     pub monitor: &'a dyn Monitor,
     pub scene: &'a Scene,
     /// The scene as masses and springs, if it is that.
-    pub plain: Option<&'a Plain>,
+    pub plain: Option<Plain>,
+    /// How far errors mean something; states are judged up to its end.
+    pub horizon: Horizon,
+    /// Step of the programs (s), if it is known.
+    pub step: Option<f64>,
+    /// Work of the present search, in springs and particles that are visited.
+    pub work: Cell<f64>,
+    /// References that were computed, each with states at the times of some file.
+    pub references: Vec<Reference>,
+}
+
+/// Scene and rows against which trials run.
+#[derive(Clone)]
+pub struct Judged<'a> {
+    pub course: &'a Course<'a>,
     pub rows: &'a Rows<'a>,
     /// Largest distance that the scene moves until the last row (m).
     pub motion: f64,
-    /// Step of the program (s), if it is known.
-    pub step: Option<f64>,
     /// Number of particles and springs, which an evaluation visits.
-    pub size: f64,
+    size: f64,
     /// Radius of the scene (m).
-    pub radius: f64,
+    radius: f64,
     /// Distance by which single precision changes a run until each row (m), if the program is
     /// taken to have it. Rows are compared as far as that tells anything.
     pub noise: Option<Vec<f64>>,
 }
 
-/// Returns the number of particles and springs of a scene.
-pub fn size(scene: &Scene) -> f64 {
-    let network = scene.model.network();
-    let springs = network.map_or(0, |network| network.all_springs().count());
-    (scene.model.particles() + springs) as f64
+/// Differences of a run from rows (m), and the square of the largest distance that agrees in their
+/// place, summed over them.
+struct Residuals {
+    all: Vec<f64>,
+    bound: f64,
+    /// Largest distance over that which agrees.
+    worst: f64,
 }
+
+/// Largest distance of a row that agrees (m), by its number and the distance moved (m).
+type Bound<'b> = &'b dyn Fn(usize, f64) -> f64;
+/// Looks at the positions (m) and velocities (m/s) at a row, and returns whether the run goes on.
+type Look<'l> = &'l mut dyn FnMut(usize, &[Vec<f64>; 2]) -> bool;
 
 /// A run of a trial.
 enum Run<'a> {
@@ -161,7 +205,7 @@ impl Run<'_> {
             Self::Method(run) => run.take_steps(steps).is_ok(),
             Self::Plain(run) => {
                 (0..steps).for_each(|_| run.step());
-                run.positions().as_flattened().iter().all(|x| x.is_finite())
+                run.x.as_flattened().iter().all(|x| x.is_finite())
             }
         }
     }
@@ -173,18 +217,77 @@ impl Run<'_> {
                 let positions = run.state()[..3 * run.particles()].to_vec();
                 [positions, run.velocities()]
             }
-            Self::Plain(run) => [run.positions(), run.velocities()].map(columns),
+            Self::Plain(run) => [&run.x, &run.v].map(|vectors| columns(vectors)),
         }
     }
 }
 
-impl Judged<'_> {
+impl<'a> Course<'a> {
+    /// Finds how long errors mean something on the scene, up to the last of all states (s) or to
+    /// `until` (s).
+    ///
+    /// # Errors
+    /// Nothing moves, a run fails, or the monitor stopped it.
+    pub fn new(
+        scene: &'a Scene,
+        last: f64,
+        until: Option<f64>,
+        step: Option<f64>,
+        monitor: &'a dyn Monitor,
+    ) -> Result<Self, Failure> {
+        let last = last.min(MAX_TIME).min(until.unwrap_or(f64::INFINITY));
+        let found = horizon(scene, last, &|| monitor.go_on()).map_err(Failure::run)?;
+        let mut horizon = found.ok_or_else(stopped)?;
+        check_motion(scene, &horizon)?;
+        if !horizon.lyapunov.is_finite() || until.is_some() {
+            horizon.until = last;
+        }
+        Ok(Self {
+            monitor,
+            scene,
+            plain: Plain::of(scene).ok(),
+            horizon,
+            step,
+            work: Cell::default(),
+            references: vec![],
+        })
+    }
+}
+
+/// Creates the failure of a command that was interrupted before all files were judged.
+pub fn stopped() -> Failure {
+    Failure::Interrupted("interrupted before all files were judged".into())
+}
+
+impl<'a> Judged<'a> {
+    /// Creates the trials of rows on a scene that moves by `motion` (m).
+    pub fn new(course: &'a Course<'a>, rows: &'a Rows<'a>, motion: f64) -> Self {
+        let network = course.scene.model.network();
+        let springs = network.map_or(0, |network| network.all_springs().count());
+        Self {
+            course,
+            rows,
+            motion,
+            size: (course.scene.model.particles() + springs) as f64,
+            radius: course.scene.extent().1,
+            noise: None,
+        }
+    }
+
+    /// Returns the scene.
+    pub fn scene(&self) -> &'a Scene {
+        self.course.scene
+    }
+
+    /// Returns the scene as masses and springs, if it is that.
+    pub fn plain(&self) -> Option<&'a Plain> {
+        self.course.plain.as_ref()
+    }
+
     /// Returns the largest distance of row k (m) that agrees, after a distance moved (m).
     pub fn tolerance(&self, k: usize, moved: f64) -> f64 {
-        let noise = self
-            .noise
-            .as_ref()
-            .map_or(0.0, |noise| noise.get(k).copied().unwrap_or(f64::INFINITY));
+        let known = |noise: &Vec<f64>| noise.get(k).copied().unwrap_or(f64::INFINITY);
+        let noise = self.noise.as_ref().map_or(0.0, known);
         AGREEMENT * moved + self.rounding(k) + SINGLE * noise
     }
 
@@ -197,25 +300,20 @@ impl Judged<'_> {
     pub fn start(&self, trial: Trial) -> &[f64] {
         match trial.start {
             Start::Row(row) if row < self.rows.len() => self.rows.positions(row),
-            _ => &self.scene.state[..3 * self.scene.model.particles()],
+            _ => &self.scene().state[..3 * self.scene().model.particles()],
         }
     }
 
     /// Returns the distance by which single precision changes a run by a scheme until each row
     /// (m), as far as it is much smaller than the motion.
-    pub fn noise(&self, scheme: Scheme, pace: Pace, work: &mut f64) -> Option<Vec<f64>> {
-        let trial = Trial {
-            way: Way::Scheme(scheme, None),
-            pace,
-            start: Start::Scene,
-        };
+    pub fn noise(&self, trial: Trial) -> Option<Vec<f64>> {
         let mut double = vec![None; self.rows.len()];
-        self.follow(trial, false, self.rows.len(), work, &mut |k, [x, _]| {
+        self.follow(trial, false, self.rows.len(), &mut |k, [x, _]| {
             double[k] = Some(x.clone());
             true
         })?;
         let (mut noise, mut most) = (vec![], 0.0);
-        let passed = self.follow(trial, true, self.rows.len(), work, &mut |k, [x, _]| {
+        let passed = self.follow(trial, true, self.rows.len(), &mut |k, [x, _]| {
             let Some(other) = &double[k] else {
                 return false;
             };
@@ -236,36 +334,28 @@ impl Judged<'_> {
     }
 
     /// Returns the work of a step of a way: springs and particles that are visited.
-    pub fn price(&self, way: Way) -> f64 {
-        self.size
-            * match way {
-                Way::Method(method) if method.is_implicit() || method.solves_linear_systems() => {
-                    IMPLICIT_WORK
-                }
-                Way::Method(method) => f64::from(method.evaluations.max(method.damped_evaluations)),
-                Way::Scheme(scheme, _) => scheme.evaluations(self.scene.model.particles()) as f64,
-            }
+    fn price(&self, way: Way) -> f64 {
+        let evaluations = match way {
+            Way::Method(m) if m.is_implicit() || m.solves_linear_systems() => IMPLICIT_WORK,
+            Way::Method(m) => f64::from(m.evaluations.max(m.damped_evaluations)),
+            Way::Scheme(scheme, _) => scheme.evaluations(self.scene().model.particles()) as f64,
+        };
+        self.size * evaluations
     }
 
     /// Runs a trial, in single precision if so, and shows each row before `end` that is at the end
     /// of a step to `look`: its number, the positions (m) and the velocities (m/s). Ends where
     /// that returns `false`, or the run blows up. Returns the number of rows until then; `None` if
-    /// the trial is not possible. `work` receives its price.
-    pub fn follow(
-        &self,
-        trial: Trial,
-        is_single: bool,
-        end: usize,
-        work: &mut f64,
-        look: &mut dyn FnMut(usize, &[Vec<f64>; 2]) -> bool,
-    ) -> Option<usize> {
+    /// the trial is not possible. The price is added to the work of the search.
+    fn follow(&self, trial: Trial, is_single: bool, end: usize, look: Look) -> Option<usize> {
+        let pay = |work: f64| self.course.work.set(self.course.work.get() + work);
         let steps = self.rows.until() / self.step_of(trial)?;
         if steps * self.price(trial.way) > MAX_WORK {
             return None;
         }
         let (mut run, first, mut taken) = self.begin(trial, is_single)?;
         if matches!(trial.way, Way::Method(_)) {
-            *work += BEGINNING * self.size;
+            pay(BEGINNING * self.size);
         }
         for k in first..end {
             let is_there = match (&self.rows.grid, &mut run) {
@@ -281,28 +371,22 @@ impl Judged<'_> {
                     };
                     let more = steps - taken;
                     taken = steps;
-                    *work += self.price(trial.way) * more as f64;
+                    pay(self.price(trial.way) * more as f64);
                     run.advance(more)
                 }
                 (None, Run::Method(run)) => run.advance_to(self.rows.times[k]).is_ok(),
                 (None, Run::Plain(_)) => return None,
             };
-            if !is_there || !self.monitor.go_on() || !look(k, &run.motion()) {
+            if !is_there || !self.course.monitor.go_on() || !look(k, &run.motion()) {
                 return Some(k);
             }
         }
         Some(end)
     }
 
-    /// Compares a trial with the rows until a row differs by more than `bound`, a function of its
-    /// number and of the distance moved (m). `None` if the trial is not possible. `work` receives
-    /// its price.
-    pub fn compare(
-        &self,
-        trial: Trial,
-        bound: &dyn Fn(usize, f64) -> f64,
-        work: &mut f64,
-    ) -> Option<Compared> {
+    /// Compares a trial with the rows until a row differs by more than its bound. `None` if the
+    /// trial is not possible.
+    pub fn compare(&self, trial: Trial, bound: Bound) -> Option<Compared> {
         let start = self.start(trial);
         let mut compared = Compared {
             rows: 0,
@@ -311,7 +395,7 @@ impl Judged<'_> {
             moved: 0.0,
             velocities: self.rows.velocities(0).map(|_| [0.0; 2]),
         };
-        let rows = self.follow(trial, false, self.last(), work, &mut |k, [x, v]| {
+        let rows = self.follow(trial, false, self.last(), &mut |k, [x, v]| {
             let apart = distance(x, self.rows.positions(k));
             let moved = compared.moved.max(distance(x, start));
             // A distance that is no number agrees with nothing.
@@ -321,18 +405,15 @@ impl Judged<'_> {
             compared.at_steps += 1;
             compared.moved = moved;
             compared.distance = compared.distance.max(apart);
-            if let (Some([apart, speed]), Some(own)) =
-                (&mut compared.velocities, self.rows.velocities(k))
-            {
+            let seen = compared.velocities.as_mut().zip(self.rows.velocities(k));
+            if let Some(([apart, speed], own)) = seen {
                 *apart = apart.max(distance(v, own));
                 *speed = speed.max(distance(v, &vec![0.0; v.len()]));
             }
             true
         });
-        Some(Compared {
-            rows: rows?,
-            ..compared
-        })
+        compared.rows = rows?;
+        Some(compared)
     }
 
     /// Returns the step of a trial (s): a part of that between grid points or, without a grid, the
@@ -340,35 +421,31 @@ impl Judged<'_> {
     pub fn step_of(&self, trial: Trial) -> Option<f64> {
         match &self.rows.grid {
             Some(grid) => Some(trial.pace.points as f64 * grid.step / trial.pace.steps as f64),
-            None => self.step,
+            None => self.course.step,
         }
     }
 
     /// Returns the run of a trial, the first row that it shows, and the number of steps from the
     /// start of the grid to its beginning.
     fn begin(&self, trial: Trial, is_single: bool) -> Option<(Run<'_>, usize, u64)> {
-        let n = self.scene.model.particles();
         let step = self.step_of(trial)?;
-        let (row, taken) = match trial.start {
-            Start::Row(row) if row < self.rows.len() && trial.pace.points == 1 => {
+        let (row, taken, given) = match trial.start {
+            Start::Row(row) => {
+                // Only masses and springs alone do not depend on time, nor on more than positions
+                // and velocities.
+                self.plain()?;
                 let grid = self.rows.grid.as_ref()?;
-                (Some(row), grid.numbers[row] * trial.pace.steps)
+                if row >= self.rows.len() || trial.pace.points != 1 {
+                    return None;
+                }
+                let given = [self.rows.positions(row), self.rows.velocities(row)?];
+                (row, grid.numbers[row] * trial.pace.steps, Some(given))
             }
-            Start::Row(_) => return None,
-            _ => (None, 0),
-        };
-        // Only masses and springs alone do not depend on time, nor on more than positions and
-        // velocities.
-        let given = match row {
-            Some(row) => {
-                self.plain?;
-                Some([self.rows.positions(row), self.rows.velocities(row)?])
-            }
-            None => None,
+            _ => (0, 0, None),
         };
         let run = match trial.way {
             Way::Method(method) => {
-                let mut scene = self.scene.clone();
+                let mut scene = self.scene().clone();
                 if let Some(given) = given {
                     scene.state = given.concat();
                 }
@@ -376,13 +453,95 @@ impl Judged<'_> {
                 Run::Method(Box::new(run))
             }
             Way::Scheme(scheme, mistake) => {
-                let plain = self.plain?;
+                let (plain, n) = (self.plain()?, self.scene().model.particles());
                 let rows = |x: &[f64]| (0..n).map(|i| [x[i], x[n + i], x[2 * n + i]]).collect();
-                let start = given.map_or_else(|| plain.start.clone(), |given| given.map(rows));
+                let own = || [&plain.list.positions, &plain.list.velocities].map(Vec::clone);
+                let start = given.map_or_else(own, |given| given.map(rows));
                 let forces = Forces::new(plain, mistake, is_single);
                 Run::Plain(Box::new(PlainRun::new(forces, scheme, step, start)))
             }
         };
-        Some((run, row.unwrap_or(0), taken))
+        Some((run, row, taken))
+    }
+
+    /// Returns a trial whose constant is fitted to the rows, by the Gauss-Newton method: first to
+    /// those at the start, on which it acts almost linearly. `None` if rows differ by more than
+    /// their bound.
+    pub fn fit(&self, trial: Trial, bound: Bound) -> Option<Trial> {
+        let Way::Scheme(scheme, Some(Mistake::Constant(mut change))) = trial.way else {
+            return Some(trial);
+        };
+        let with = |change: Change| Trial {
+            way: Way::Scheme(scheme, Some(Mistake::Constant(change))),
+            ..trial
+        };
+        let mut end = FIRST_ROWS;
+        let mut is_fitted = false;
+        loop {
+            end = end.min(self.last());
+            for _ in 0..MAX_ITERATIONS {
+                if self.course.work.get() > MAX_WORK_OF_FITS {
+                    return None;
+                }
+                let now = self.residuals(with(change), end, bound)?;
+                let factor = change.factor + DELTA;
+                let moved = with(Change { factor, ..change });
+                let moved = self.residuals(moved, end, bound)?;
+                let (mut slope, mut square) = (0.0, 0.0);
+                for (now, moved) in now.all.iter().zip(&moved.all) {
+                    let rate = (moved - now) / DELTA;
+                    slope += rate * now;
+                    square += rate * rate;
+                }
+                is_fitted = square > MIN_EFFECT.powi(2) * now.bound;
+                if !is_fitted {
+                    break;
+                }
+                let less = slope / square;
+                change.factor -= less;
+                if less.abs() <= SETTLED {
+                    break;
+                }
+            }
+            if change.factor.abs() > MAX_FACTOR || !change.factor.is_finite() {
+                change.factor = 1.0;
+                is_fitted = false;
+            }
+            if is_fitted && self.residuals(with(change), end, bound)?.worst > SLACK {
+                return None;
+            }
+            if end == self.last() {
+                break;
+            }
+            end *= MORE_ROWS;
+        }
+        if !is_fitted {
+            return None;
+        }
+        let typed = with(change.typed());
+        let agrees = self.residuals(typed, end, bound)?.worst <= 1.0;
+        Some(if agrees { typed } else { with(change) })
+    }
+
+    /// Returns the differences of a trial from the first rows. `None` if it blows up there.
+    fn residuals(&self, trial: Trial, end: usize, bound: Bound) -> Option<Residuals> {
+        let mut found = Residuals {
+            all: vec![],
+            bound: 0.0,
+            worst: 0.0,
+        };
+        let (start, mut most) = (self.start(trial), 0.0);
+        let passed = self.follow(trial, false, end, &mut |k, [x, _]| {
+            let own = self.rows.positions(k);
+            most = f64::max(most, distance(own, start));
+            let bound = bound(k, most);
+            found.bound += own.len() as f64 / 3.0 * bound.powi(2);
+            found.worst = found
+                .worst
+                .max(distance(x, own) / bound.max(f64::MIN_POSITIVE));
+            found.all.extend(x.iter().zip(own).map(|(x, own)| x - own));
+            true
+        })?;
+        (passed == end).then_some(found)
     }
 }

@@ -42,14 +42,9 @@ pub fn text(name: &str, judgement: &Judgement, within: Option<f64>) -> String {
     }
     if let Some(within) = within {
         let error = amount(judgement.worst.error);
-        line(
-            "within",
-            if is_within(judgement, within) {
-                format!("yes: {error} m of {within} m")
-            } else {
-                format!("no: {}", too_large(judgement, within))
-            },
-        );
+        let met = is_within(judgement, within).then(|| format!("yes: {error} m of {within} m"));
+        let missed = || format!("no: {}", too_large(judgement, within));
+        line("within", met.unwrap_or_else(missed));
     }
     lines.join("\n") + "\n"
 }
@@ -63,9 +58,7 @@ pub fn is_within(judgement: &Judgement, within: f64) -> bool {
 pub fn too_large(judgement: &Judgement, within: f64) -> String {
     let error = judgement.worst.error;
     match judgement.not_finite_at {
-        Some(t) if error <= within => {
-            format!("its numbers are not finite from {} on", seconds(t))
-        }
+        Some(t) if error <= within => format!("its numbers are not finite from {} on", seconds(t)),
         _ => format!(
             "it errs by {} m at worst, more than {within} m",
             amount(error)
@@ -83,11 +76,8 @@ pub fn orders(runs: &[(&str, f64, f64)]) -> String {
             return None;
         };
         let order = (coarse / fine).ln() / (long / brief).ln();
-        let why = if order < MIN_ORDER {
-            ": the error does not fall with the step, so it is not that of the method"
-        } else {
-            ""
-        };
+        let why = ": the error does not fall with the step, so it is not that of the method";
+        let why = if order < MIN_ORDER { why } else { "" };
         let steps = format!("{a} ({}) to {b} ({})", seconds(long), seconds(brief));
         (long > 1.001 * brief).then(|| format!("order {order:.2} from {steps}{why}\n"))
     };
@@ -100,15 +90,12 @@ pub fn is_resolved(judgement: &Judgement) -> bool {
 }
 
 fn states(judgement: &Judgement) -> String {
-    let Judgement { states, judged, .. } = judgement;
-    let kind = if judgement.has_velocities {
-        "with velocities"
-    } else {
-        "positions only"
-    };
+    let (states, judged, every) = (judgement.states, judgement.judged, judgement.every);
+    let kinds = ["positions only", "with velocities"];
+    let kind = kinds[usize::from(judgement.has_velocities)];
     let mut text = format!("{judged} states to {}, {kind}", seconds(judgement.until));
-    if judgement.every > 1 {
-        _ = write!(text, "; one of {} is compared", judgement.every);
+    if every > 1 {
+        _ = write!(text, "; one of {every} is compared");
     }
     if judged < states {
         _ = write!(text, "; {} later ones are not judged", states - judged);
@@ -143,27 +130,17 @@ pub fn difference(start: &Difference) -> String {
 }
 
 fn error(judgement: &Judgement) -> String {
-    let worst = judgement.worst;
-    let mut text = format!(
-        "{} m at worst, at {}",
-        amount(worst.error),
-        seconds(worst.time)
-    );
-    if !is_resolved(judgement) {
-        let floor = judgement.floor;
-        _ = write!(
-            text,
-            ": as good as exact, for the reference itself is known to {floor:.0e} m"
-        );
+    let (worst, floor) = (judgement.worst, judgement.floor);
+    let (error, time) = (amount(worst.error), seconds(worst.time));
+    let more = if !is_resolved(judgement) {
+        format!(": as good as exact, for the reference itself is known to {floor:.0e} m")
     } else if worst.distance > worst.error * 1.001 {
-        _ = write!(
-            text,
-            "; particle {} is farthest, {} m from its place",
-            worst.particle,
-            amount(worst.distance)
-        );
-    }
-    text
+        let (i, distance) = (worst.particle, amount(worst.distance));
+        format!("; particle {i} is farthest, {distance} m from its place")
+    } else {
+        String::new()
+    };
+    format!("{error} m at worst, at {time}{more}")
 }
 
 fn in_time(judgement: &Judgement) -> String {
@@ -177,18 +154,11 @@ fn in_time(judgement: &Judgement) -> String {
 
 fn energy_words(Drift { worst, time, end }: Drift, kinetic: f64) -> String {
     let sign = if end < 0.0 { "too little" } else { "too much" };
-    let share = if kinetic > 0.0 {
-        let percent = amount(100.0 * end.abs() / kinetic);
-        format!(", {percent} % of the largest kinetic energy")
-    } else {
-        String::new()
-    };
-    format!(
-        "off by {} J at worst, at {}; {} J {sign} at the end{share}",
-        amount(worst),
-        seconds(time),
-        amount(end.abs())
-    )
+    let percent = amount(100.0 * end.abs() / kinetic);
+    let share = format!(", {percent} % of the largest kinetic energy");
+    let share = Some(share).filter(|_| kinetic > 0.0).unwrap_or_default();
+    let (worst, time, end) = (amount(worst), seconds(time), amount(end.abs()));
+    format!("off by {worst} J at worst, at {time}; {end} J {sign} at the end{share}")
 }
 
 /// Largest number of methods or mistakes that are named beside the one that a file agrees with.
@@ -219,17 +189,14 @@ fn found(judgement: &Judgement, agreement: &Agreement) -> Vec<(&'static str, Str
     } else {
         format!("to {:.0e} m", compared.distance)
     };
-    let until = agreement
-        .until
-        .map(|until| format!(", until {}", seconds(until)));
-    let text = format!(
-        "agrees with {} {how}{}",
-        way(agreement),
-        until.unwrap_or_default()
-    );
-    let mut lines = vec![("method", text)];
-    if agreement.trial.pace.points > 1 {
-        let points = agreement.trial.pace.points;
+    let until = agreement.until.map(|t| format!(", until {}", seconds(t)));
+    let until = until.unwrap_or_default();
+    let mut lines = vec![(
+        "method",
+        format!("agrees with {} {how}{until}", way(agreement)),
+    )];
+    let points = agreement.trial.pace.points;
+    if points > 1 {
         let text = format!(
             "1 of {points} is at the end of a step: others lie between steps, and are not compared"
         );
@@ -237,17 +204,13 @@ fn found(judgement: &Judgement, agreement: &Agreement) -> Vec<(&'static str, Str
     }
     lines.extend(others(agreement, &judgement.found.also));
     let mut questions: Vec<_> = vec![];
-    for asked in [agreement]
-        .into_iter()
-        .chain(&judgement.found.also)
-        .filter_map(question)
-    {
+    let asked = [agreement].into_iter().chain(&judgement.found.also);
+    for asked in asked.filter_map(question) {
         if !questions.contains(&asked) && questions.len() < MAX_OTHERS {
             questions.push(asked);
         }
     }
-    let questions = questions.into_iter();
-    lines.extend(questions.map(|question| ("question", question)));
+    lines.extend(questions.into_iter().map(|it| ("question", it)));
     if let Some([apart, speed]) = compared.velocities
         && agreement.until.is_none()
         && apart > MIN_APART * speed
@@ -267,24 +230,22 @@ fn others(agreement: &Agreement, also: &[Agreement]) -> Option<(&'static str, St
     let mut names: Vec<_> = vec![];
     for other in also.iter().map(|other| other.trial) {
         let name = match (own.way.mistake(), other.way.mistake()) {
-            (Some(mistake), Some(other)) if mistake.words() == other.words() => continue,
-            (Some(_), Some(other)) => format!("with {}", other.words()),
+            (Some(mistake), Some(other)) if mistake.words()[0] == other.words()[0] => continue,
+            (Some(_), Some(other)) => format!("with {}", other.words()[0]),
             _ if other.way.title() != own.way.title() => other.way.title().to_owned(),
             _ => format!("the same{}", slips(&other)),
         };
-        if !names.contains(&name) && way_of(&other) != way_of(&own) {
+        let is_same = other.way.title() == own.way.title() && slips(&other) == slips(&own);
+        if !names.contains(&name) && !is_same {
             names.push(name);
         }
     }
     let more = names.len().saturating_sub(MAX_OTHERS);
     names.truncate(MAX_OTHERS);
-    let more = if more > 0 {
-        format!(" and {more} more")
-    } else {
-        String::new()
-    };
-    let same = "which cannot be told apart here";
-    (!names.is_empty()).then(|| ("or", format!("{}{more}: {same}", names.join("; "))))
+    let more = (more > 0).then(|| format!(" and {more} more"));
+    let (names, more) = (names.join("; "), more.unwrap_or_default());
+    let text = format!("{names}{more}: which cannot be told apart here");
+    (!names.is_empty()).then_some(("or", text))
 }
 
 fn not_found(judgement: &Judgement) -> Vec<(&'static str, String)> {
@@ -295,11 +256,8 @@ fn not_found(judgement: &Judgement) -> Vec<(&'static str, String)> {
     } else {
         format!("steps from {} to {}", seconds(longest), seconds(shortest))
     };
-    let known = if judgement.has_known_step {
-        ""
-    } else {
-        ": if its step is another, add --step"
-    };
+    let known = [": if its step is another, add --step", ""];
+    let known = known[usize::from(judgement.has_known_step)];
     let mut lines = vec![("method", format!("agrees with no solver at {steps}{known}"))];
     let mut near = |key, near: &Agreement, only| {
         let away = amount(near.compared.distance);
@@ -320,25 +278,17 @@ fn not_found(judgement: &Judgement) -> Vec<(&'static str, String)> {
 
 /// Returns a method with its step and its mistake.
 fn way(agreement: &Agreement) -> String {
-    let trial = agreement.trial;
-    let title = trial.way.title();
+    let title = agreement.trial.way.title();
     // Methods that are called after people have no article.
-    let has_article = [
+    let middle = [
         "explicit trapezoid",
         "explicit midpoint",
         "implicit midpoint",
     ];
-    let article = if has_article.iter().any(|begin| title.starts_with(begin)) {
-        "the "
-    } else {
-        ""
-    };
-    let precision = if agreement.is_single {
-        " in single precision"
-    } else {
-        ""
-    };
-    let slips = slips(&trial);
+    let has_article = middle.iter().any(|begin| title.starts_with(begin));
+    let article = if has_article { "the " } else { "" };
+    let precision = ["", " in single precision"][usize::from(agreement.is_single)];
+    let slips = slips(&agreement.trial);
     let end = if slips.is_empty() { "" } else { "," };
     let step = seconds(agreement.step);
     format!("{article}{title} at {step}{precision}{slips}{end}")
@@ -347,21 +297,19 @@ fn way(agreement: &Agreement) -> String {
 /// Returns the differences from the method: a slip or a mistake, and the row at which the
 /// comparison begins.
 fn slips(trial: &Trial) -> String {
-    let slip = trial.way.slip().map(|slip| format!(", but with {slip}"));
+    let [slip, _] = trial.way.slip();
+    let slip = slip.map(|slip| format!(", but with {slip}"));
     slip.unwrap_or_default() + since(trial.start)
 }
 
 /// Returns the slips of an agreement in words, if it has some.
 pub fn mistake(agreement: &Agreement) -> Option<String> {
     let slips = slips(&agreement.trial);
-    let words = slips.trim_start_matches(", ").trim_start_matches("but ");
-    let words = words.trim_start_matches("with ");
+    let words = [", ", "but ", "with "];
+    let words = words
+        .iter()
+        .fold(&*slips, |rest, word| rest.trim_start_matches(word));
     (!words.is_empty()).then(|| words.into())
-}
-
-/// Returns the method and where the comparison begins.
-fn way_of(trial: &Trial) -> (&'static str, String) {
-    (trial.way.title(), slips(trial))
 }
 
 /// Returns where the agreement begins.
@@ -383,11 +331,8 @@ pub fn question(agreement: &Agreement) -> Option<String> {
         Start::Ahead => Some("is the first row written after the first step?"),
         Start::Behind => Some("is the start written twice?"),
     };
-    agreement
-        .trial
-        .way
-        .question()
-        .or(of_start.map(String::from))
+    let [_, of_way] = agreement.trial.way.slip();
+    of_way.or(of_start.map(String::from))
 }
 
 /// Returns a quantity with two digits, in plain decimals where these are few.

@@ -15,7 +15,7 @@ use a3_files::setup::Request;
 use a3_scenes::{Description, Regridded, regridded};
 use serde::{Deserialize, Serialize};
 
-use super::track::{Compared, Motion};
+use super::track::Compared;
 
 /// Relative tolerance of the runs, whose errors are far below those of grids.
 const TOLERANCE: f64 = 1e-5;
@@ -137,15 +137,14 @@ pub fn grid_error(
         }
         let other = request.with(description).scene()?;
         let other = compared.follow(&other, accurate, Some(&places), &interrupt::go_on);
-        let Some(Motion::Known(other)) = other.map_err(Failure::run)? else {
+        let Some(other) = Failure::unless_stopped(other)?.flatten() else {
             return Ok(None);
         };
         if whole.is_none() {
-            whole = compared
-                .follow(scene, accurate, None, &interrupt::go_on)
-                .map_err(Failure::run)?;
+            let own = compared.follow(scene, accurate, None, &interrupt::go_on);
+            whole = Failure::unless_stopped(own)?.flatten();
         }
-        let Some(Motion::Known(whole)) = &whole else {
+        let Some(whole) = &whole else {
             return Ok(None);
         };
         let change = compared.distance(whole, &other);

@@ -5,4 +5,4 @@ mod track;
 
 pub use grid_error::{GridError, grid, grid_error};
 pub use grid_error::{Known, beside, open, words};
-pub use track::{Compared, Motion, Places, Track};
+pub use track::{Compared, Places, Track};

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use a3_core::accuracy::{FrameState, Frames, GoOn, Scope, run};
-use a3_core::{Control, Error, Method, Network, Scene, Simulation};
-
+use a3_core::{Control, Method, Network, Scene, Simulation};
+use a3_files::failure::Failure;
 use a3_files::quantity::Quantity;
 
 /// Particles of one grid, each as a weighted mean of particles of another grid.
@@ -48,25 +48,20 @@ impl Track {
     }
 }
 
-/// Motion of a model.
-pub enum Motion {
-    /// The quantity that is compared, in the whole run.
-    Known(Track),
-    /// The run blew up.
-    Failed,
-}
-
 impl Compared {
     /// Runs a scene by a method, and records the quantity. On other grids than those of the scene
-    /// that it is compared with, `places` gives the particles of that scene. `None` if `go_on`
-    /// returned false.
+    /// that it is compared with, `places` gives the particles of that scene. `None` if the run
+    /// blew up.
+    ///
+    /// # Errors
+    /// The method does not support the scene, or `go_on` returned false.
     pub fn follow(
         self,
         scene: &Scene,
         (method, control): (&'static Method, Control),
         places: Option<&Places>,
         go_on: GoOn,
-    ) -> Result<Option<Motion>, Error> {
+    ) -> Result<Option<Track>, Failure> {
         let mut simulation = Simulation::new(scene.clone(), method, control)?;
         let mut values = vec![self.of(&simulation, 0.0, &scene.state, places)];
         let begun = Instant::now();
@@ -78,6 +73,7 @@ impl Compared {
             spent += begun.elapsed();
         };
         let end = run(&mut simulation, &self.frames, go_on, Some(&mut visit))?;
+        let blow_up = end.ok_or_else(Failure::stopped)?;
         let time = begun.elapsed().saturating_sub(spent);
         if self.quantity == Quantity::Energy {
             let start = values[0][0];
@@ -85,14 +81,8 @@ impl Compared {
                 value[0] -= start;
             }
         }
-        Ok(end.map(|blow_up| match blow_up {
-            Some(_) => Motion::Failed,
-            None => Motion::Known(Track {
-                values,
-                time,
-                work: simulation.work().total(),
-            }),
-        }))
+        let work = simulation.work().total();
+        Ok(blow_up.is_none().then_some(Track { values, time, work }))
     }
 
     /// Returns the quantity in a state of a run at time t (s).

@@ -14,7 +14,7 @@ use super::lean::Solved;
 use super::models::{FACTORS, Models};
 use crate::chart::measure::time;
 use crate::chart::table::words;
-use crate::motion::{GridError, Motion, Places, Track, grid};
+use crate::motion::{GridError, Places, Track, grid};
 
 /// Styles of the grids, from the coarsest to the finest.
 const STYLES: [(&str, Marker); 5] = [
@@ -48,8 +48,8 @@ struct Grid {
 /// not limited by the grid.
 const LONG_STEPS: [&str; 2] = ["implicit", "tr-bdf2"];
 
-/// Measures the runs of the chart. `None` if the scene has one grid only, if grids differ by more
-/// than the motion, or if the monitor stopped it.
+/// Measures the runs of the chart. `None` if the scene has one grid only, or if grids differ by
+/// more than the motion.
 pub fn chart(
     models: &Models,
     whole: &Solved,
@@ -92,25 +92,19 @@ pub fn chart(
         let least = models.compared.distance(&truth, &grid.motion);
         let mut runs = vec![];
         for method in &methods {
-            let Some(own) = measured(models, grid, method, (&truth, least))? else {
-                return Ok(None);
-            };
-            runs.extend(own);
+            runs.extend(measured(models, grid, method, (&truth, least))?);
         }
         // Long steps that err less than short ones do so because their errors and those of the grid
         // cancel by chance.
         runs.retain(|run| run.error > LEAST_SHARE * least && run.error < motion);
-        let runs = best(runs);
-        balance.extend(balanced(&runs, BALANCE * least));
-        curves.push(Curve {
-            style: CurveStyle {
-                colour,
-                dash: &[],
-                marker: *marker,
-            },
+        let mut curve = Curve {
+            style: CurveStyle::new(colour, &[], *marker),
             name: grid.name.clone(),
             runs,
-        });
+        };
+        curve.runs = curve.joined().into_iter().cloned().collect();
+        balance.extend(balanced(&curve.runs, BALANCE * least));
+        curves.push(curve);
     }
     if curves.iter().all(|curve| curve.runs.is_empty()) {
         return Ok(None);
@@ -175,18 +169,6 @@ fn short(method: &Method) -> String {
     method.letter.map_or_else(name, String::from)
 }
 
-/// Returns the runs that no other beats in both error and work, from the most accurate on.
-fn best(mut runs: Vec<Measurement>) -> Vec<Measurement> {
-    runs.sort_by(|a, b| a.error.total_cmp(&b.error).then(a.work.total_cmp(&b.work)));
-    let mut least = f64::INFINITY;
-    runs.retain(|run| {
-        let is_better = run.work < least;
-        least = least.min(run.work);
-        is_better
-    });
-    runs
-}
-
 /// Returns the point of a curve, an error and its work, at which the error is this: between the
 /// runs that enclose it, on logarithmic scales. `None` if none do.
 fn balanced(runs: &[Measurement], error: f64) -> Option<[f64; 2]> {
@@ -215,7 +197,7 @@ fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
             None if factor == 1.0 => (own.clone(), None),
             None => continue,
         };
-        let Some(Ok(motion)) = models.follow(&description, places.as_deref())? else {
+        let Ok(motion) = models.follow(&description, places.as_deref())? else {
             continue;
         };
         let name = format!("grid of {}", grid(&description));
@@ -236,14 +218,13 @@ fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
 }
 
 /// Measures runs on a grid by a method at several steps or tolerances, from the coarsest on, until
-/// the grid makes nearly all of the error. `least` is the error of its accurate run. `None` if the
-/// monitor stopped it.
+/// the grid makes nearly all of the error. `least` is the error of its accurate run.
 fn measured(
     models: &Models,
     grid: &Grid,
     method: &'static Method,
     (truth, least): (&Track, f64),
-) -> Result<Option<Vec<Measurement>>, Failure> {
+) -> Result<Vec<Measurement>, Failure> {
     let (scene, compared) = (&grid.scene, models.compared);
     let go_on = &|| models.monitor.go_on();
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
@@ -256,22 +237,14 @@ fn measured(
     let places: Option<&Places> = grid.places.as_deref();
     for control in first.into_iter().chain(rungs).take(MAX_RUNS) {
         let run = compared.follow(scene, (method, control), places, go_on);
-        let measured = match run.map_err(Failure::run)? {
-            None => return Ok(None),
-            Some(Motion::Failed) => None,
-            Some(Motion::Known(track)) => {
-                let frames = &compared.frames;
-                let Some(time) = time(go_on, scene, method, control, frames, Some(track.time))?
-                else {
-                    return Ok(None);
-                };
-                Some((compared.distance(truth, &track), time))
-            }
-        };
-        models.monitor.advance(1.0);
-        let Some((error, time)) = measured else {
+        let Some(track) = run? else {
+            models.monitor.advance(1.0);
             continue;
         };
+        let (frames, before) = (&compared.frames, Some(track.time));
+        let time = time(go_on, scene, method, control, frames, before)?;
+        let error = compared.distance(truth, &track);
+        models.monitor.advance(1.0);
         found.push(Measurement {
             error,
             work: time.as_secs_f64() / compared.frames.until,
@@ -283,5 +256,5 @@ fn measured(
             break;
         }
     }
-    Ok(Some(found))
+    Ok(found)
 }

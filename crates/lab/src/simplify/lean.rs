@@ -5,13 +5,12 @@ use std::cmp::Reverse;
 
 use a3_core::accuracy::{Candidate, Trial, choose_by};
 use a3_core::integrators::METHODS;
-use a3_core::{Control, Error, Method};
+use a3_core::{Control, Method};
 use a3_files::failure::Failure;
 use a3_scenes::{Description, Part, regridded, without};
 
 use super::models::{Model, Models, in_turns};
 use crate::chart::measure::time;
-use crate::motion::Motion;
 
 /// Share of the error that the model may cause; the time steps may cause the rest.
 const MODEL_SHARE: f64 = 0.6;
@@ -78,8 +77,7 @@ pub struct Answer {
 }
 
 /// Assembles the leanest model that changes the motion by at most the model's share of the error.
-/// `None` if the monitor stopped it.
-pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<LeanModel>, Failure> {
+pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<LeanModel, Failure> {
     let max_change = MODEL_SHARE * error;
     let own = &*models.request.source.description;
     let particles = models.scene.model.particles();
@@ -107,19 +105,16 @@ pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<Lea
         let found = if left_out.is_empty() && places.is_none() {
             0.0
         } else {
-            match models.follow(&description, places.as_deref())? {
-                None => return Ok(None),
-                Some(Ok(track)) => models.change(&track),
-                Some(Err(_)) => f64::INFINITY,
-            }
+            let track = models.follow(&description, places.as_deref())?;
+            track.map_or(f64::INFINITY, |track| models.change(&track))
         };
         if found <= max_change {
-            return Ok(Some(LeanModel {
+            return Ok(LeanModel {
                 description,
                 parts: left_out,
                 factor,
                 error: found,
-            }));
+            });
         }
         // The part that changes the motion most is restored first, and the grid last.
         if parts.pop().is_none() {
@@ -129,8 +124,7 @@ pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<Option<Lea
 }
 
 /// Finds the cheapest solver for a model whose run differs from the motion of the whole scene by
-/// at most the error: that of the model and of the time steps together. `None` if no solver was
-/// found, or the monitor stopped it.
+/// at most the error: that of the model and of the time steps together. `None` if there is none.
 /// `first` is the method that is tried first: the cheaper it is, the fewer runs of others are
 /// necessary.
 pub fn solve(
@@ -150,23 +144,14 @@ pub fn solve(
     let frames = models.compared.frames;
     let go_on = &|| models.monitor.go_on();
     let measure = |method, control| {
-        let run = models
-            .compared
-            .follow(&scene, (method, control), places.as_deref(), go_on)?;
-        Ok::<_, Error>(run.map(|motion| match motion {
-            Motion::Failed => Trial {
-                error: f64::INFINITY,
-                work: 0.0,
-                outcome: f64::INFINITY,
-            },
-            Motion::Known(track) => {
-                let error = models.change(&track);
-                Trial {
-                    error,
-                    work: track.work,
-                    outcome: error,
-                }
-            }
+        let (by, places) = ((method, control), places.as_deref());
+        let run = models.compared.follow(&scene, by, places, go_on)?;
+        let work = run.as_ref().map_or(0.0, |track| track.work);
+        let error = run.map_or(f64::INFINITY, |track| models.change(&track));
+        Ok::<_, Failure>(Some(Trial {
+            error,
+            work,
+            outcome: error,
         }))
     };
     let most = error - models.uncertainty;
@@ -178,12 +163,11 @@ pub fn solve(
     let mut methods: Vec<_> = METHODS.iter().collect();
     methods.sort_by_key(|method| (method.name != first, Reverse(method.order)));
     let found = choose_by(&methods, &scene, &frames, most, max_cost, measure, |_| {});
-    let found = found.map_err(Failure::run)?;
-    let Some(best) = found.and_then(|found| found.into_iter().next()) else {
+    let Some(best) = found?.into_iter().flatten().next() else {
         return Ok(None);
     };
     let time = time(go_on, &scene, best.method, best.control, &frames, None)?;
-    Ok(time.map(|time| Solved {
+    Ok(Some(Solved {
         method: best.method,
         control: best.control,
         error: best.outcome,
@@ -192,7 +176,7 @@ pub fn solve(
     }))
 }
 
-/// Times the runs of both scenes again in turns. Stops if the monitor does.
+/// Times the runs of both scenes again in turns.
 pub fn time_in_turns(
     models: &Models,
     model: &LeanModel,
@@ -202,8 +186,7 @@ pub fn time_in_turns(
     let (scene, frames) = (models.build(&model.description)?, models.compared.frames);
     let runs = [(&scene, &*lean), (&models.scene, &*whole)];
     let runs = runs.map(|(scene, solved)| (scene, solved.method, solved.control));
-    if let Some(times) = in_turns(runs, &frames, &|| models.monitor.go_on())? {
-        [lean.time, whole.time] = times.map(|time| time.as_secs_f64() / frames.until);
-    }
+    let times = in_turns(runs, &frames, &|| models.monitor.go_on())?;
+    [lean.time, whole.time] = times.map(|time| time.as_secs_f64() / frames.until);
     Ok(())
 }

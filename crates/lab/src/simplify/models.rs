@@ -13,7 +13,7 @@ use a3_files::rows::Rows;
 use a3_files::setup::Request;
 use a3_scenes::{Description, Part, Regridded, parts, regridded, without};
 
-use crate::motion::{Compared, Known, Motion, Places, Track, grid};
+use crate::motion::{Compared, Known, Places, Track, grid};
 
 /// Relative tolerances at which the whole scene is tried, the largest first. The first that is
 /// accurate enough is that of all models.
@@ -49,17 +49,6 @@ pub struct Models<'a> {
     pub uncertainty: f64,
 }
 
-/// Effect of a model, compared with the whole scene.
-#[derive(Clone, Copy, Debug)]
-pub struct Effect {
-    /// Change of the quantity that is compared, in its unit.
-    pub change: f64,
-    /// Computing time of the model over that of the whole scene.
-    pub time: f64,
-    /// Work of the model over that of the whole scene, in evaluations of each.
-    pub work: f64,
-}
-
 /// Model of a scene: without a part, or on another grid.
 pub struct Model {
     /// Name in the table.
@@ -72,22 +61,22 @@ pub struct Model {
     /// Factor by which the cells of its grids are shorter; 1 for the grids of the scene.
     pub factor: f64,
     /// Effect of the model, or the reason why it was not measured.
-    pub effect: Result<Effect, String>,
+    pub effect: Result<Known, String>,
 }
 
 impl<'a> Models<'a> {
     /// Integrates the whole scene much more accurately than to the error that is asked for, which
-    /// two methods of different orders have to agree about. `None` if the monitor stopped it.
+    /// two methods of different orders have to agree about.
     ///
     /// # Errors
-    /// No run is accurate enough.
+    /// No run is accurate enough, or the monitor stopped it.
     pub fn new(
         request: &'a Request,
         scene: Scene,
         compared: Compared,
         error: f64,
         monitor: &'a dyn Monitor,
-    ) -> Result<Option<Self>, Failure> {
+    ) -> Result<Self, Failure> {
         let go_on = &|| monitor.go_on();
         let [method, other] = ["verner65", "dop853"].map(|name| find(name).expect(name));
         let mut best: Option<(Track, f64, f64)> = None;
@@ -96,16 +85,9 @@ impl<'a> Models<'a> {
             let mut runs = vec![];
             for (method, tolerance) in [(method, tolerance), (other, CHECK_RATIO * tolerance)] {
                 let by = (method, Control::Tolerance(tolerance));
-                let Some(run) = compared
-                    .follow(&scene, by, None, go_on)
-                    .map_err(Failure::run)?
-                else {
-                    return Ok(None);
-                };
-                runs.push(run);
+                runs.push(compared.follow(&scene, by, None, go_on)?);
             }
-            let Ok([Motion::Known(track), Motion::Known(check)]) = <[Motion; 2]>::try_from(runs)
-            else {
+            let Ok([Some(track), Some(check)]) = <[_; 2]>::try_from(runs) else {
                 continue;
             };
             let uncertainty = compared.distance(&track, &check);
@@ -133,7 +115,7 @@ impl<'a> Models<'a> {
                 uncertainty / MAX_UNCERTAINTY
             )));
         }
-        Ok(Some(Self {
+        Ok(Self {
             request,
             monitor,
             scene,
@@ -141,22 +123,25 @@ impl<'a> Models<'a> {
             whole,
             accurate: (method, Control::Tolerance(tolerance)),
             uncertainty,
-        }))
+        })
     }
 
     /// Lists the models to be measured: without each part, and on each other grid. The second value
     /// gives the reason if the grids cannot be changed.
     pub fn all(&self) -> (Vec<Model>, Option<String>) {
         let own = &*self.request.source.description;
-        let model = |part: Part| Model {
-            name: part.name.clone(),
-            description: without(own, [&part]),
+        let model = |name, part, description| Model {
+            name,
+            description,
             places: None,
-            part: Some(part),
+            part,
             factor: 1.0,
             effect: Err("not measured".into()),
         };
-        let mut all: Vec<_> = parts(own).into_iter().map(model).collect();
+        let parts = parts(own).into_iter();
+        let mut all: Vec<_> = parts
+            .map(|part| model(part.name.clone(), Some(part.clone()), without(own, [&part])))
+            .collect();
         let mut why = None;
         for factor in FACTORS {
             match regridded(own, factor, self.scene.model.particles()) {
@@ -165,13 +150,11 @@ impl<'a> Models<'a> {
                     places,
                 }) => {
                     if all.iter().all(|model| model.description != description) {
+                        let name = format!("grid of {}", grid(&description));
                         all.push(Model {
-                            name: format!("grid of {}", grid(&description)),
-                            description,
                             places: Some(places),
-                            part: None,
                             factor,
-                            effect: Err("not measured".into()),
+                            ..model(name, None, description)
                         });
                     }
                 }
@@ -186,43 +169,38 @@ impl<'a> Models<'a> {
         (all, why.filter(|_| !has_grids))
     }
 
-    /// Measures a model, unless it is known. Returns `false` if the monitor stopped it.
-    pub fn measure(&self, model: &mut Model, known: &mut Rows<Known>) -> Result<bool, Failure> {
+    /// Measures a model, unless it is known.
+    fn measure(&self, model: &mut Model, known: &mut Rows<Known>) -> Result<(), Failure> {
         let like = Known {
             model: model.name.clone(),
             ..Known::new(self.request, &self.scene, self.compared, self.accurate)
         };
-        if let Some(&Known {
-            change, time, work, ..
-        }) = known.find(&like)
-        {
-            model.effect = Ok(Effect { change, time, work });
-            return Ok(true);
+        if let Some(known) = known.find(&like) {
+            model.effect = Ok(known.clone());
+            return Ok(());
         }
-        let Some(found) = self.follow(&model.description, model.places.as_deref())? else {
-            return Ok(false);
-        };
-        model.effect = match found {
-            Ok(track) => {
-                let scene = self.build(&model.description)?;
-                let Some(time) = self.time(&scene)? else {
-                    return Ok(false);
-                };
-                let (change, work) = (self.change(&track), track.work / self.whole.work);
-                Ok(Effect { change, time, work })
+        let found = self.follow(&model.description, model.places.as_deref())?;
+        let track = match found {
+            Ok(track) => track,
+            Err(why) => {
+                model.effect = Err(why);
+                return Ok(());
             }
-            Err(why) => Err(why),
         };
-        if let Ok(Effect { change, time, work }) = model.effect {
-            known.add(Known {
-                change,
-                time,
-                work,
-                ..like
-            });
-            known.save()?;
-        }
-        Ok(true)
+        let scene = self.build(&model.description)?;
+        // The time of the model over that of the whole scene, which runs in turns with it.
+        let (method, control) = self.accurate;
+        let runs = [&scene, &self.scene].map(|scene| (scene, method, control));
+        let [own, whole] = in_turns(runs, &self.compared.frames, &|| self.monitor.go_on())?;
+        let row = Known {
+            change: self.change(&track),
+            time: own.as_secs_f64() / whole.as_secs_f64(),
+            work: track.work / self.whole.work,
+            ..like
+        };
+        model.effect = Ok(row.clone());
+        known.add(row);
+        known.save()
     }
 
     /// Returns the change of the quantity in a model whose motion is known.
@@ -230,32 +208,18 @@ impl<'a> Models<'a> {
         self.compared.distance(&self.whole, track)
     }
 
-    /// Times a model and the whole scene in turns. Returns the time of the model over that of the
-    /// whole scene; `None` if the monitor stopped it.
-    fn time(&self, scene: &Scene) -> Result<Option<f64>, Failure> {
-        let (method, control) = self.accurate;
-        let runs = [scene, &self.scene].map(|scene| (scene, method, control));
-        let times = in_turns(runs, &self.compared.frames, &|| self.monitor.go_on())?;
-        Ok(times.map(|[model, whole]| model.as_secs_f64() / whole.as_secs_f64()))
-    }
-
-    /// Integrates a model. Returns its motion, or the reason why it cannot be integrated; `None` if
-    /// the command was interrupted.
+    /// Integrates a model. Returns its motion, or the reason why it cannot be integrated.
     pub fn follow(
         &self,
         description: &Description,
         places: Option<&Places>,
-    ) -> Result<Option<Result<Track, String>>, Failure> {
+    ) -> Result<Result<Track, String>, Failure> {
         let Ok(scene) = self.build(description) else {
-            return Ok(Some(Err("a scene without it cannot be built".into())));
+            return Ok(Err("a scene without it cannot be built".into()));
         };
         let go_on = &|| self.monitor.go_on();
-        let found = self.compared.follow(&scene, self.accurate, places, go_on);
-        Ok(match found.map_err(Failure::run)? {
-            None => None,
-            Some(Motion::Failed) => Some(Err("it blows up".into())),
-            Some(Motion::Known(track)) => Some(Ok(track)),
-        })
+        let found = self.compared.follow(&scene, self.accurate, places, go_on)?;
+        Ok(found.ok_or_else(|| "it blows up".into()))
     }
 
     /// Builds the scene of another description.
@@ -264,13 +228,12 @@ impl<'a> Models<'a> {
     }
 }
 
-/// Measures all models that can be measured and are not known. Returns `false` if the monitor
-/// stopped it.
+/// Measures all models that can be measured and are not known.
 pub fn measure_all(
     models: &Models,
     all: &mut [Model],
     known: &mut Rows<Known>,
-) -> Result<bool, Failure> {
+) -> Result<(), Failure> {
     // A model on a finer grid has more particles and, by an explicit method, shorter steps.
     let weight = |model: &Model| model.factor.powi(4);
     let monitor = models.monitor;
@@ -278,12 +241,10 @@ pub fn measure_all(
     monitor.start();
     for model in all {
         monitor.stage(&model.name);
-        if !models.measure(model, known)? {
-            return Ok(false);
-        }
+        models.measure(model, known)?;
         monitor.advance(weight(model));
     }
-    Ok(true)
+    Ok(())
 }
 
 /// Least and largest number of turns.
@@ -292,12 +253,12 @@ const TURNS: std::ops::Range<u32> = 3..200;
 const ENOUGH: Duration = Duration::from_millis(300);
 
 /// Times two runs in turns, in processor time, so that other work of the machine slows both alike.
-/// The shortest time of each counts. `None` if `go_on` returned false.
+/// The shortest time of each counts.
 pub fn in_turns(
     runs: [(&Scene, &'static Method, Control); 2],
     frames: &Frames,
     go_on: GoOn,
-) -> Result<Option<[Duration; 2]>, Failure> {
+) -> Result<[Duration; 2], Failure> {
     let (mut best, mut sum) = ([Duration::MAX; 2], Duration::ZERO);
     for turn in 0..TURNS.end {
         if turn >= TURNS.start && sum > ENOUGH {
@@ -309,12 +270,10 @@ pub fn in_turns(
             let begun = processor::time();
             let end = accuracy::run(&mut run, frames, go_on, None);
             let elapsed = processor::time().saturating_sub(begun);
-            if end.map_err(Failure::run)?.is_none() {
-                return Ok(None);
-            }
+            end.map_err(Failure::run)?.ok_or_else(Failure::stopped)?;
             *best = elapsed.min(*best);
             sum += elapsed;
         }
     }
-    Ok(Some(best))
+    Ok(best)
 }

@@ -1,10 +1,10 @@
 //! The table of the models, and the leanest scene in words.
 
 use a3_files::quantity::Quantity;
-use a3_files::report::Report;
+use a3_files::report::{Report, headings};
 use a3_scenes::Description;
 
-use super::lean::{Answer, LeanModel};
+use super::lean::{Answer, LeanModel, Solved};
 use super::models::{Model, Models};
 use crate::chart::table::words;
 use crate::motion::{GridError, grid};
@@ -72,32 +72,20 @@ fn rows(
     error: f64,
     lean: Option<&LeanModel>,
 ) -> Vec<Vec<String>> {
-    let changes = format!(" changes ({unit})");
-    let heading = [
-        "left out or changed",
-        &changes,
-        " of motion",
-        " saves",
-        "verdict",
-    ];
-    let mut rows = vec![heading.map(String::from).to_vec()];
+    let columns = format!("left out or changed| changes ({unit})| of motion| saves|verdict");
+    let mut rows = headings(&columns);
     for model in models {
-        rows.push(match &model.effect {
-            Err(_) => vec![
-                model.name.clone(),
-                "-".into(),
-                "-".into(),
-                "-".into(),
-                verdict(model, error, lean).into(),
-            ],
-            Ok(effect) => vec![
-                model.name.clone(),
+        let numbers = match &model.effect {
+            Err(_) => ["-"; 3].map(String::from),
+            Ok(effect) => [
                 number(effect.change),
                 percent(effect.change / motion),
                 percent(1.0 - effect.time),
-                verdict(model, error, lean).into(),
             ],
-        });
+        };
+        let verdict = verdict(model, error, lean).into();
+        let name = [model.name.clone()].into_iter();
+        rows.push(name.chain(numbers).chain([verdict]).collect());
     }
     rows
 }
@@ -135,13 +123,18 @@ pub fn of_grid(models: &[Model], description: &Description) -> Option<GridError>
 }
 
 /// Describes the leanest scene in words, beside the whole scene.
-pub fn of_lean(answer: &Answer, unit: &str) -> String {
-    let Answer {
-        model: lean,
-        solved,
-        whole,
-    } = answer;
-    let times = whole.time / solved.time;
+fn of_lean(answer: &Answer, unit: &str) -> String {
+    let (lean, whole) = (&answer.model, &answer.whole);
+    let said = |solved: &Solved| {
+        let error = number(solved.error);
+        format!(
+            "{}, {}: error {error} {unit}",
+            solved.method.title,
+            words(solved.control)
+        )
+    };
+    let lasts = |solved: &Solved| format!("{:.3} ms a simulated second", 1e3 * solved.time);
+    let of_whole = format!("  whole  {}, {}\n", said(whole), lasts(whole));
     let mut changes = vec![];
     if !lean.parts.is_empty() {
         let names: Vec<_> = lean.parts.iter().map(|part| &*part.name).collect();
@@ -150,30 +143,20 @@ pub fn of_lean(answer: &Answer, unit: &str) -> String {
     if lean.factor < 1.0 {
         changes.push(format!("on a grid of {}", grid(&lean.description)));
     }
-    let of_whole = format!(
-        "  whole  {}, {}: error {} {unit}, {} a simulated second\n",
-        whole.method.title,
-        words(whole.control),
-        number(whole.error),
-        milliseconds(whole.time),
-    );
     if changes.is_empty() {
         return format!("nothing can be left out that would save time\n{of_whole}");
     }
+    let times = whole.time / answer.solved.time;
     let times = if times < 1.05 {
         "no cheaper in this measurement".into()
     } else {
         format!("{times:.1} times cheaper")
     };
+    let (changes, error) = (changes.join("; "), number(lean.error));
+    let (said, lasts) = (said(&answer.solved), lasts(&answer.solved));
     format!(
-        "leanest scene, {times}: {}\n{of_whole}  lean   {}, {}: error {} {unit} in all, {} {unit} of it \
-         the model's, {} a simulated second\n",
-        changes.join("; "),
-        solved.method.title,
-        words(solved.control),
-        number(solved.error),
-        number(lean.error),
-        milliseconds(solved.time),
+        "leanest scene, {times}: {changes}\n{of_whole}  lean   {said} in all, {error} {unit} of it \
+         the model's, {lasts}\n"
     )
 }
 
@@ -200,9 +183,4 @@ fn percent(share: f64) -> String {
     } else {
         format!("{percent:.0e} %")
     }
-}
-
-/// Writes a time (s) in ms.
-fn milliseconds(seconds: f64) -> String {
-    format!("{:.3} ms", 1e3 * seconds)
 }

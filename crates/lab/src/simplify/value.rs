@@ -203,13 +203,14 @@ pub fn measure(
     let mut known = open(options.data.as_deref())?;
     let models = whole(options, request, monitor)?;
     let (mut all, why) = models.all();
-    let answer = if measure_all(&models, &mut all, &mut known)? {
-        leanest(&models, &all, options.error)?
-    } else {
-        None
-    };
+    let answer = measure_all(&models, &mut all, &mut known);
+    let answer =
+        Failure::unless_stopped(answer.and_then(|()| leanest(&models, &all, options.error)))?;
     let of_models = match &answer {
-        Some(answer) if options.chart => chart(&models, &answer.whole, format!("Models: {title}"))?,
+        Some(answer) if options.chart => {
+            Failure::unless_stopped(chart(&models, &answer.whole, format!("Models: {title}")))?
+                .flatten()
+        }
         _ => None,
     };
     let lean = answer.as_ref().map(|answer| &answer.model);
@@ -274,7 +275,7 @@ fn whole<'a>(
         ));
     }
     monitor.stage("looking ahead");
-    let horizon = look_ahead(&scene, options.until, 1.0, monitor)?.ok_or_else(stopped)?;
+    let horizon = look_ahead(&scene, options.until, 1.0, monitor)?.ok_or_else(Failure::stopped)?;
     check_motion(&scene, &horizon)?;
     monitor.stage("whole scene");
     let compared = Compared {
@@ -282,7 +283,7 @@ fn whole<'a>(
         frames: Frames::new(horizon.until),
         scope,
     };
-    let models = Models::new(request, scene, compared, error, monitor)?.ok_or_else(stopped)?;
+    let models = Models::new(request, scene, compared, error, monitor)?;
     let motion = compared.way(&models.whole);
     if error > motion {
         monitor.warn(&format!(
@@ -296,23 +297,18 @@ fn whole<'a>(
 }
 
 /// Assembles the leanest scene, and finds the cheapest solvers for it and for the whole scene.
-/// `None` if the monitor stopped it.
-fn leanest(models: &Models, all: &[Model], error: f64) -> Result<Option<Answer>, Failure> {
+fn leanest(models: &Models, all: &[Model], error: f64) -> Result<Answer, Failure> {
     let monitor = models.monitor;
     monitor.stage("cheapest solver");
-    let Some(mut whole) = solve(models, &LeanModel::whole(models), error, OFTEN_CHEAPEST)? else {
-        if !monitor.go_on() {
-            return Ok(None);
-        }
-        return Err(Failure::run(format!(
+    let whole = solve(models, &LeanModel::whole(models), error, OFTEN_CHEAPEST)?;
+    let mut whole = whole.ok_or_else(|| {
+        Failure::run(format!(
             "no solver meets an error of {error:e} {} on the whole scene",
             models.compared.unit()
-        )));
-    };
+        ))
+    })?;
     monitor.stage("leanest scene");
-    let Some(model) = assemble(models, all, error)? else {
-        return Ok(None);
-    };
+    let model = assemble(models, all, error)?;
     let mut solved = if model.is_whole() {
         None
     } else {
@@ -322,7 +318,7 @@ fn leanest(models: &Models, all: &[Model], error: f64) -> Result<Option<Answer>,
         time_in_turns(models, &model, solved, &mut whole)?;
     }
     if !monitor.go_on() {
-        return Ok(None);
+        return Err(Failure::stopped());
     }
     // The leanest scene has to save time, or to take no more work.
     let pays = |solved: &Solved| {
@@ -331,11 +327,11 @@ fn leanest(models: &Models, all: &[Model], error: f64) -> Result<Option<Answer>,
     };
     let found = solved.filter(pays).map(|solved| (model, solved));
     let (model, solved) = found.unwrap_or_else(|| (LeanModel::whole(models), whole));
-    Ok(Some(Answer {
+    Ok(Answer {
         model,
         solved,
         whole,
-    }))
+    })
 }
 
 /// Writes the leanest scene as a scene file, with its solver and its step.
@@ -362,9 +358,4 @@ fn lean_scene(models: &Models, answer: &Answer) -> Result<LeanScene, Failure> {
         lean: SceneRun::new(solved),
         whole: SceneRun::new(&answer.whole),
     })
-}
-
-/// Creates the failure of a command that was interrupted before any model was measured.
-fn stopped() -> Failure {
-    Failure::Interrupted("interrupted before anything was measured".into())
 }

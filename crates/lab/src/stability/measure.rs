@@ -16,11 +16,6 @@ const MAX_WORK_IN_MOTION: f64 = 1.5e8;
 /// Largest work of that for its limits at rest, in the same unit.
 const MAX_WORK_AT_REST: f64 = 8e7;
 
-/// Creates the failure of a command that was interrupted before any limit was measured.
-fn nothing() -> Failure {
-    Failure::Interrupted("interrupted before anything was measured".into())
-}
-
 /// Measures the limits of all methods, at rest and in motion at the same time.
 pub fn measure(
     scene: &Scene,
@@ -79,7 +74,7 @@ pub fn measure(
     let (moving, resting) = rayon::join(in_motion, at_rest);
     let (motion, moving) = moving.map_err(Failure::run)?;
     let (hanging, resting) = resting.map_err(Failure::run)?;
-    let motion = motion.ok_or_else(nothing)?;
+    let motion = motion.ok_or_else(Failure::stopped)?;
     let rows: Vec<_> = (measured.iter().zip(resting).zip(moving))
         .filter_map(|((method, rest), moving)| Some(limits(method, rest?, moving?)))
         .collect();
@@ -90,7 +85,7 @@ pub fn measure(
     let rows: Vec<_> = methods.iter().filter_map(|method| row(method)).collect();
     monitor.clear();
     if rows.is_empty() {
-        return Err(nothing());
+        return Err(Failure::stopped());
     }
     Ok(Stability {
         limits: rows,

@@ -4,10 +4,11 @@ use std::fmt::Write;
 
 use a3_core::stability::{Limit, Mode, Observation};
 use a3_files::failure::Failure;
-use a3_files::report::{Report, table};
+use a3_files::report::{Report, headings, table};
 use serde::Serialize;
 
 use super::measure::{MethodLimits, Stability};
+use crate::chart::table::short;
 
 /// Writes a step (s) in ms, to three digits.
 pub fn step(seconds: f64) -> String {
@@ -17,9 +18,7 @@ pub fn step(seconds: f64) -> String {
         0.0 => "0".into(),
         _ if ms < 0.009_95 => format!("{ms:.1e}"),
         _ if ms < 0.999_5 => format!("{ms:.3}"),
-        _ if ms < 9.995 => format!("{ms:.2}"),
-        _ if ms < 99.95 => format!("{ms:.1}"),
-        _ => format!("{ms:.0}"),
+        _ => short(ms),
     }
 }
 
@@ -48,15 +47,7 @@ pub fn observation(seen: Option<Observation>) -> String {
 /// Creates the table of all limits, below the fastest motion and above the meaning of the columns.
 pub fn report(found: &Stability) -> Report {
     let rows = &found.limits;
-    let heading = [
-        "solver",
-        " at rest",
-        " tenfold",
-        " observed",
-        " moving",
-        " accurate",
-    ];
-    let mut cells = vec![heading.map(String::from).to_vec()];
+    let mut cells = headings("solver| at rest| tenfold| observed| moving| accurate");
     for row in rows {
         cells.push(vec![
             row.method.name.to_owned(),
@@ -107,13 +98,13 @@ pub fn report(found: &Stability) -> Report {
     if any_observed(rows, Observation::is_open) {
         meanings.push((">", "no longer step was tried"));
     }
-    let short: Vec<_> = rows.iter().filter(|row| row.is_short).collect();
-    let names: Vec<_> = short.iter().map(|row| row.method.name).collect();
+    let short = rows.iter().filter(|row| row.is_short);
+    let names: Vec<_> = short.map(|row| row.method.name).collect();
     let why = format!(
         "the runs were shorter than 10 s, or too few to tell more, because they take long: {}",
         names.join(", ")
     );
-    if !short.is_empty() {
+    if !names.is_empty() {
         meanings.push(("short", &why));
     }
     let meanings = meanings
@@ -130,8 +121,7 @@ pub fn report(found: &Stability) -> Report {
 /// Creates the table of the largest stable step of each method with its reason, and of the largest
 /// accurate one.
 pub fn reasons(found: &Stability) -> Report {
-    let heading = ["solver", " stable", " accurate", "with longer steps"];
-    let mut rows = vec![heading.map(String::from).to_vec()];
+    let mut rows = headings("solver| stable| accurate|with longer steps");
     let modes = found.at_rest.as_deref().unwrap_or(&found.at_start);
     for row in &found.limits {
         let (stable, why) = reason(row, modes);

@@ -74,9 +74,8 @@ impl Stability {
     /// The picture does not fit on the sheet.
     pub fn figure(&self, step: Option<f64>, width: u32, height: u32) -> Result<Figure, Failure> {
         let fastest = self.fastest(&self.at_start);
-        let fastest = fastest
-            .or(self.at_start.first())
-            .map_or(1.0, Mode::frequency);
+        let fastest = fastest.or(self.at_start.first());
+        let fastest = fastest.map_or(1.0, Mode::frequency);
         let h = step.unwrap_or_else(|| format!("{:.1e}", 1.0 / fastest).parse().unwrap_or(1.0));
         let title = format!("Where solvers fail: {}", self.title);
         let regions = chart(title, &self.limits, &self.at_start, h);
@@ -89,21 +88,16 @@ impl Stability {
 pub fn chart(title: String, rows: &[MethodLimits], modes: &[Mode], h: f64) -> StabilityRegions {
     let methods: Vec<_> = rows.iter().map(|row| row.method).collect();
     let styles = picture::each(&methods);
+    let mut seen = rows.iter().filter_map(|row| row.bounded);
+    let is_interval = seen.any(|seen| is_interval(&seen));
+    let note = is_interval.then(|| format!("a\u{2013}b\u{a0}{INTERVAL}"));
     StabilityRegions {
         title,
         subtitle: format!(
             "Where the eigenvalues of the scene as it starts, times a step of {}\u{a0}ms, lie in each solver's stable region",
             step(h)
         ),
-        note: if rows
-            .iter()
-            .filter_map(|row| row.bounded)
-            .any(|seen| is_interval(&seen))
-        {
-            format!("a\u{2013}b\u{a0}{INTERVAL}")
-        } else {
-            String::new()
-        },
+        note: note.unwrap_or_default(),
         regions: (rows.iter().zip(styles))
             .map(|(row, style)| region(row, style, modes, h))
             .collect(),
@@ -114,16 +108,10 @@ pub fn chart(title: String, rows: &[MethodLimits], modes: &[Mode], h: f64) -> St
 fn region(row: &MethodLimits, style: CurveStyle, modes: &[Mode], h: f64) -> Region {
     let method = row.method;
     let is_bdf = method.name == "bdf";
-    let subtitle = format!(
-        "{}bounded {}\u{a0}ms, accurate {}\u{a0}ms",
-        if is_bdf {
-            "region of all orders; fixed steps: "
-        } else {
-            ""
-        },
-        observation(row.bounded),
-        row.accurate.map_or("-".into(), step)
-    );
+    let of = ["", "region of all orders; fixed steps: "][usize::from(is_bdf)];
+    let accurate = row.accurate.map_or("-".into(), step);
+    let bounded = observation(row.bounded);
+    let subtitle = format!("{of}bounded {bounded}\u{a0}ms, accurate {accurate}\u{a0}ms");
     // The growth of a Runge-Kutta step depends on the eigenvalues only. That of a splitting method
     // also depends on how the damping is divided between drag and springs, which is taken from the
     // fastest mode.
@@ -145,17 +133,15 @@ fn region(row: &MethodLimits, style: CurveStyle, modes: &[Mode], h: f64) -> Regi
         };
         Growth::new(method, mode).map_or(f64::INFINITY, |mut growth| growth.of_step(1.0))
     };
+    let returning = modes.iter().filter(|mode| mode.returns());
+    let eigenvalues = returning.flat_map(Mode::eigenvalues);
+    let eigenvalues = eigenvalues.map(|[re, im]| [h * re, h * im]);
     Region {
         style,
         title: method.title.to_owned(),
         subtitle,
         radius: Box::new(radius),
         slow: GROWTH.powf(h / tenfold_time(h)),
-        eigenvalues: modes
-            .iter()
-            .filter(|mode| mode.returns())
-            .flat_map(Mode::eigenvalues)
-            .map(|[re, im]| [h * re, h * im])
-            .collect(),
+        eigenvalues: eigenvalues.collect(),
     }
 }

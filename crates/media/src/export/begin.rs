@@ -7,7 +7,7 @@ use a3_files::frames::{FrameTimes, Sequence};
 use a3_files::output;
 use a3_files::setup::Run;
 
-use super::format::Export;
+use super::geometry::{Export, Job};
 use super::{csv, glb, json, npz, obj, pc2, usd};
 
 /// Default frames per second.
@@ -35,7 +35,6 @@ pub fn begin(
     run: &Run,
 ) -> Result<(FrameTimes, Box<dyn Export>), Failure> {
     let (simulation, presentation) = (&run.simulation, &run.presentation);
-    let surface = &presentation.surface;
     let obj = |files| obj::Obj {
         presentation: presentation.clone(),
         files,
@@ -67,59 +66,40 @@ pub fn begin(
     }
     let all = FrameTimes::new(0.0, until, rate.unwrap_or(DEFAULT_RATE))?;
     let several = all.since(simulation.time());
-    let particles = simulation.particles() as f64;
-    let check = |size: f64, largest: f64| check_size(size, largest).map(|()| several);
-    Ok(match (ending.to_str(), sequence) {
-        (Some("csv"), _) => {
-            let frames = check(
-                csv::ROW_SIZE * particles * several.count as f64,
-                MAX_SIZES.0,
-            )?;
-            (frames, Box::new(csv::Csv::new(path, frames.first)?))
-        }
-        (Some("npz"), _) => {
-            let frames = check(npz::size(particles, several), MAX_SIZES.1)?;
-            (frames, Box::new(npz::Npz::new(path, simulation, frames)?))
-        }
-        (Some("pc2"), _) => {
-            let frames = check(pc2::size(simulation, several), MAX_SIZES.0)?;
-            (
-                frames,
-                Box::new(pc2::Pc2::new(path, surface, simulation, frames)?),
-            )
-        }
-        (Some("glb"), _) => {
+    let (particles, count) = (simulation.particles() as f64, several.count as f64);
+    let (ending, first) = (ending.to_str(), several.first);
+    let job = Job {
+        path,
+        surface: &presentation.surface,
+        simulation,
+        frames: several,
+    };
+    let (size, largest) = match ending {
+        Some("csv") => (csv::ROW_SIZE * particles * count, MAX_SIZES.0),
+        Some("npz") => (npz::size(particles, several), MAX_SIZES.1),
+        Some("pc2") => (pc2::size(simulation, several), MAX_SIZES.0),
+        Some("glb") => {
             glb::check(several)?;
-            let frames = check(glb::size(surface, simulation, several), MAX_SIZES.1)?;
-            (
-                frames,
-                Box::new(glb::Glb::new(path, surface, simulation, frames)?),
-            )
+            (glb::size(job), MAX_SIZES.1)
         }
-        (Some("usda"), _) => {
-            let frames = check(usd::size(simulation, several), MAX_SIZES.0)?;
-            (
-                frames,
-                Box::new(usd::Usd::new(path, surface, simulation, frames)?),
-            )
+        Some("usda") => (usd::size(simulation, several), MAX_SIZES.0),
+        Some("obj") => {
+            sequence.iter().try_for_each(|it| it.check(all.count))?;
+            (obj::size(job) * count, MAX_SIZES.0)
         }
-        (Some("obj"), Some(sequence)) => {
-            sequence.check(all.count)?;
-            let frames = check(
-                obj::size(surface, simulation) * several.count as f64,
-                MAX_SIZES.0,
-            )?;
-            let files = obj::Files::Many(sequence, frames.first);
-            (frames, Box::new(obj(files)))
-        }
-        _ => {
-            let frames = check(
-                json::ROW_SIZE * particles * several.count as f64,
-                MAX_SIZES.0,
-            )?;
-            (frames, Box::new(json::Json::new(path, true)?))
-        }
-    })
+        _ => (json::ROW_SIZE * particles * count, MAX_SIZES.0),
+    };
+    check_size(size, largest)?;
+    let export: Box<dyn Export> = match (ending, sequence) {
+        (Some("csv"), _) => Box::new(csv::Csv::new(path, first)?),
+        (Some("npz"), _) => Box::new(npz::Npz::new(path, simulation, several)?),
+        (Some("pc2"), _) => Box::new(pc2::Pc2::new(job)?),
+        (Some("glb"), _) => Box::new(glb::Glb::new(job)?),
+        (Some("usda"), _) => Box::new(usd::Usd::new(job)?),
+        (Some("obj"), Some(sequence)) => Box::new(obj(obj::Files::Many(sequence, first))),
+        _ => Box::new(json::Json::new(path, true)?),
+    };
+    Ok((several, export))
 }
 
 /// Refuses a file of `bytes` bytes if they are more than `largest` (GiB).

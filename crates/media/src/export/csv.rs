@@ -7,8 +7,7 @@ use a3_files::failure::Failure;
 use a3_files::output::Draft;
 use a3_files::rounding::{DIGITS, short};
 
-use super::format::Export;
-use super::format::velocities;
+use super::geometry::{Export, velocities};
 
 /// Approximate size of a row (bytes).
 pub const ROW_SIZE: f64 = 150.0;

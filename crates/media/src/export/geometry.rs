@@ -1,14 +1,61 @@
-//! The geometry of a scene for other programs: a surface with normals, and lines and points of
+//! The interface of all exports, with checks and encodings of numbers for several of them; and the
+//! geometry of a scene for other programs: a surface with normals, and lines and points of
 //! particles without one.
 
 use std::collections::BTreeSet;
-use std::io;
+use std::io::{self, Write};
+use std::path::Path;
 
 use a3_core::{Network, Simulation};
+use a3_files::failure::Failure;
+use a3_files::frames::FrameTimes;
 use a3_files::rounding::{DIGITS, short};
 use a3_scenes::Surface;
 
 use crate::surfaces::{tessellation, whole_triangles};
+
+/// What an export is made of.
+#[derive(Clone, Copy)]
+pub struct Job<'a> {
+    pub path: &'a Path,
+    pub surface: &'a Surface,
+    pub simulation: &'a Simulation,
+    pub frames: FrameTimes,
+}
+
+/// An export that is being written.
+pub trait Export {
+    /// Adds the current state as a frame.
+    fn add(&mut self, simulation: &Simulation) -> Result<(), Failure>;
+
+    /// Completes the export after its last frame.
+    fn finish(self: Box<Self>) -> Result<(), Failure>;
+}
+
+/// Returns the velocities of all particles (m/s); a failure if a number of the state is not finite.
+pub fn velocities(simulation: &Simulation) -> Result<Vec<f64>, Failure> {
+    let velocities = simulation.velocities();
+    let mut all = simulation.state().iter().chain(&velocities);
+    if all.all(|x| x.is_finite()) {
+        return Ok(velocities);
+    }
+    Err(Failure::run(format!(
+        "the state at t = {} s has numbers that are not finite",
+        short(simulation.time(), DIGITS)
+    )))
+}
+
+/// Writes vectors in little-endian single precision, one after the other.
+pub fn rows(file: &mut dyn Write, vectors: &[[f32; 3]]) -> io::Result<()> {
+    for number in vectors.as_flattened() {
+        if !number.is_finite() {
+            let why = "a displacement is too large for single precision";
+            return Err(io::Error::other(why));
+        }
+        file.write_all(&number.to_le_bytes())?;
+    }
+    Ok(())
+}
 
 /// The connections between particles, which stay the same from frame to frame until something
 /// tears.

@@ -5,18 +5,14 @@
 //! size.
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use a3_core::Simulation;
 use a3_files::failure::Failure;
 use a3_files::frames::FrameTimes;
 use a3_files::output::{Draft, Scratch};
-use a3_scenes::Surface;
 use serde_json::{Value, json};
 
-use super::format::Export;
-use super::format::rows;
-use super::geometry::{Geometry, positions};
+use super::geometry::{Export, Geometry, Job, positions, rows};
 use crate::surfaces::Liquid;
 
 /// Largest number of frames. The animation has a weight for each morph target in each frame, so
@@ -58,10 +54,10 @@ struct Binary {
 }
 
 /// Returns the size of the binary chunk (bytes).
-pub fn size(surface: &Surface, simulation: &Simulation, frames: FrameTimes) -> f64 {
-    let geometry = Geometry::of(surface, simulation);
-    let (n, count) = (geometry.vertices as f64, frames.count as f64);
-    let Liquid { corners, triangles } = Liquid::of(simulation, |_| None);
+pub fn size(job: Job) -> f64 {
+    let geometry = Geometry::of(job.surface, job.simulation);
+    let (n, count) = (geometry.vertices as f64, job.frames.count as f64);
+    let Liquid { corners, triangles } = Liquid::of(job.simulation, |_| None);
     let liquid = 24.0 * corners.len() as f64 + 12.0 * triangles.len() as f64;
     (24.0 * n + liquid) * count + 12.0 * geometry.triangles.len() as f64 + 4.0 * count * count
 }
@@ -78,20 +74,15 @@ pub fn check(frames: FrameTimes) -> Result<(), Failure> {
 }
 
 impl Glb {
-    /// Creates a file for these frames of the simulation.
-    pub fn new(
-        path: &Path,
-        surface: &Surface,
-        simulation: &Simulation,
-        frames: FrameTimes,
-    ) -> Result<Self, Failure> {
-        let draft = Draft::new(path)?;
-        let file = Scratch::new(path)?;
+    /// Creates a file.
+    pub fn new(job: Job) -> Result<Self, Failure> {
+        let draft = Draft::new(job.path)?;
+        let file = Scratch::new(job.path)?;
         Ok(Self {
             draft,
-            geometry: Geometry::of(surface, simulation),
-            frames,
-            scene: simulation.scene().name.clone(),
+            geometry: Geometry::of(job.surface, job.simulation),
+            frames: job.frames,
+            scene: job.simulation.scene().name.clone(),
             binary: Binary {
                 file: io::BufWriter::new(file),
                 length: 0,
@@ -123,9 +114,9 @@ impl Glb {
         } else {
             self.first = Some([x.clone(), normals.clone()]);
         }
-        let mut attributes = json!({ "POSITION": self.binary.vectors(&x, true)? });
+        let mut attributes = json!({ "POSITION": self.binary.vectors(&x, Some(VERTICES), true)? });
         if self.has_surface() {
-            attributes["NORMAL"] = self.binary.vectors(&normals, false)?.into();
+            attributes["NORMAL"] = self.binary.vectors(&normals, Some(VERTICES), false)?.into();
         }
         self.attributes.push(attributes);
         let liquid = self.binary.liquid(&Liquid::of(simulation, |_| None))?;
@@ -175,13 +166,8 @@ impl Glb {
         let targets = times.len() - 1;
         let row =
             |k: usize| (0..targets).map(move |target| if target + 1 == k { 1.0 } else { 0.0 });
-        let input = self.binary.scalars(times.iter().copied(), times.len())?;
-        let (first, last) = (times[0], times[targets]);
-        self.binary.accessors[input]["min"] = json!([first]);
-        self.binary.accessors[input]["max"] = json!([last]);
-        let output = self
-            .binary
-            .scalars((0..times.len()).flat_map(row), times.len() * targets)?;
+        let input = self.binary.times(&times)?;
+        let output = self.binary.scalars((0..times.len()).flat_map(row))?;
         let mut samplers =
             vec![json!({ "input": input, "output": output, "interpolation": "LINEAR" })];
         let mut channels =
@@ -194,11 +180,10 @@ impl Glb {
                 keys.insert(0, (times[0], 0.0));
             }
             keys.extend(times.get(k + 1).map(|time| (*time, 0.0)));
-            let input = keys.iter().map(|(time, _)| *time);
-            let input = self.binary.scalars(input, keys.len())?;
-            self.binary.accessors[input]["min"] = json!([keys[0].0]);
-            self.binary.accessors[input]["max"] = json!([keys[keys.len() - 1].0]);
-            let output = self.binary.sizes(keys.iter().map(|(_, size)| *size))?;
+            let (keys, sizes): (Vec<_>, Vec<_>) = keys.into_iter().unzip();
+            let input = self.binary.times(&keys)?;
+            let sizes: Vec<_> = sizes.into_iter().map(|size: f32| [size; 3]).collect();
+            let output = self.binary.vectors(&sizes, None, false)?;
             channels.push(json!({
                 "sampler": samplers.len(), "target": { "node": node, "path": "scale" }
             }));
@@ -318,8 +303,8 @@ impl Binary {
         }
         let corners = liquid.corners.iter();
         let (places, normals): (Vec<_>, Vec<_>) = corners.map(|c| (c.place, c.normal)).unzip();
-        let positions = self.vectors(&places, true)?;
-        let normals = self.vectors(&normals, false)?;
+        let positions = self.vectors(&places, Some(VERTICES), true)?;
+        let normals = self.vectors(&normals, Some(VERTICES), false)?;
         let indices = self.indices(liquid.triangles.as_flattened())?;
         Ok(json!({
             "mode": TRIANGLES, "material": 1, "indices": indices,
@@ -327,9 +312,14 @@ impl Binary {
         }))
     }
 
-    /// Writes vectors of vertices, and returns the number of their accessor. An accessor of
+    /// Writes vectors, and returns the number of their accessor. An accessor of
     /// positions must have a range.
-    fn vectors(&mut self, vectors: &[[f32; 3]], with_range: bool) -> io::Result<usize> {
+    fn vectors(
+        &mut self,
+        vectors: &[[f32; 3]],
+        target: Option<u32>,
+        with_range: bool,
+    ) -> io::Result<usize> {
         rows(&mut self.file, vectors)?;
         let mut accessor = json!({ "componentType": F32, "type": "VEC3", "count": vectors.len() });
         if with_range {
@@ -339,7 +329,7 @@ impl Binary {
             accessor["min"] = json!(of(f32::INFINITY, f32::min));
             accessor["max"] = json!(of(f32::NEG_INFINITY, f32::max));
         }
-        Ok(self.accessor(12 * vectors.len(), Some(VERTICES), accessor))
+        Ok(self.accessor(12 * vectors.len(), target, accessor))
     }
 
     /// Writes indices, and returns the number of their accessor.
@@ -351,21 +341,23 @@ impl Binary {
         Ok(self.accessor(4 * indices.len(), Some(INDICES), accessor))
     }
 
-    /// Writes sizes, the same along each axis, and returns the number of their accessor.
-    fn sizes(&mut self, sizes: impl Iterator<Item = f32>) -> io::Result<usize> {
-        let sizes: Vec<_> = sizes.map(|size| [size; 3]).collect();
-        rows(&mut self.file, &sizes)?;
-        let accessor = json!({ "componentType": F32, "type": "VEC3", "count": sizes.len() });
-        Ok(self.accessor(12 * sizes.len(), None, accessor))
-    }
-
-    /// Writes `count` scalars, and returns the number of their accessor.
-    fn scalars(&mut self, scalars: impl Iterator<Item = f32>, count: usize) -> io::Result<usize> {
+    /// Writes scalars, and returns the number of their accessor.
+    fn scalars(&mut self, scalars: impl Iterator<Item = f32>) -> io::Result<usize> {
+        let mut count = 0;
         for scalar in scalars {
             self.file.write_all(&scalar.to_le_bytes())?;
+            count += 1;
         }
         let accessor = json!({ "componentType": F32, "type": "SCALAR", "count": count });
         Ok(self.accessor(4 * count, None, accessor))
+    }
+
+    /// Writes times, in order, and returns the number of their accessor, which has a range.
+    fn times(&mut self, times: &[f32]) -> io::Result<usize> {
+        let accessor = self.scalars(times.iter().copied())?;
+        self.accessors[accessor]["min"] = json!([times[0]]);
+        self.accessors[accessor]["max"] = json!([times[times.len() - 1]]);
+        Ok(accessor)
     }
 }
 

@@ -10,8 +10,7 @@ use a3_files::rounding::{DIGITS, short};
 use a3_files::terminal;
 use serde::{Serialize, Serializer};
 
-use super::format::Export;
-use super::format::velocities;
+use super::geometry::{Export, velocities};
 
 /// Approximate size of a particle (bytes).
 pub const ROW_SIZE: f64 = 130.0;

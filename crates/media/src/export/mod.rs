@@ -2,7 +2,6 @@
 
 mod begin;
 mod csv;
-mod format;
 mod geometry;
 mod glb;
 mod json;
@@ -12,4 +11,4 @@ mod pc2;
 mod usd;
 
 pub use begin::{begin, check_ending};
-pub use format::Export;
+pub use geometry::Export;

@@ -15,8 +15,7 @@ use a3_files::output::{Draft, Scratch};
 use a3_files::rounding::{DIGITS, short};
 use crc32fast::Hasher;
 
-use super::format::Export;
-use super::format::velocities;
+use super::geometry::{Export, velocities};
 
 /// Alignment of the numbers, to which the header is padded (bytes).
 const ALIGNMENT: usize = 64;
@@ -47,15 +46,6 @@ struct Array {
     file: BufWriter<Scratch>,
     checksum: Hasher,
     bytes: usize,
-}
-
-/// An entry of the directory of the archive: an array.
-struct Entry {
-    name: String,
-    checksum: u32,
-    bytes: u32,
-    /// Offset in the archive (bytes).
-    offset: u32,
 }
 
 /// Returns the approximate size of the archive (bytes).
@@ -159,35 +149,43 @@ impl Array {
 /// Writes the archive: the arrays, each after its name, the directory, and the offset of the
 /// directory.
 fn archive(file: &mut dyn Write, arrays: impl Iterator<Item = Array>) -> io::Result<()> {
-    let (mut entries, mut offset) = (vec![], 0);
+    let (mut directory, mut offset, mut count) = (vec![], 0, 0u16);
     for mut array in arrays {
         array.file.flush()?;
-        let entry = Entry {
-            name: format!("{}.npy", array.name),
-            checksum: array.checksum.finalize(),
-            bytes: length(array.bytes)?,
-            offset: length(offset)?,
-        };
-        let head = [
-            &b"PK\x03\x04"[..],
-            &entry.shared_fields(),
-            entry.name.as_bytes(),
-        ]
-        .concat();
+        let name = format!("{}.npy", array.name);
+        let [version, date, length_of_name] =
+            [VERSION, DATE, name.len() as u16].map(u16::to_le_bytes);
+        let checksum = array.checksum.finalize().to_le_bytes();
+        let [bytes, start] = [length(array.bytes)?, length(offset)?].map(u32::to_le_bytes);
+        // What stands both before the array and in the directory. The flags, the method (stored)
+        // and the time of day are 0, and so is the length of extras.
+        let shared = [
+            &version[..],
+            &[0; 6],
+            &date,
+            &checksum,
+            &bytes,
+            &bytes,
+            &length_of_name,
+            &[0; 2],
+        ];
+        let (shared, name) = (&shared.concat()[..], name.as_bytes());
+        let head = [b"PK\x03\x04", shared, name].concat();
         file.write_all(&head)?;
         io::copy(&mut array.file.get_ref().reader()?, file)?;
+        // The length of a comment, the disk and the attributes are 0.
+        let entry = [b"PK\x01\x02", &version[..], shared, &[0; 10], &start, name];
+        directory.extend(entry.concat());
         offset += head.len() + array.bytes;
-        entries.push(entry);
+        count += 1;
     }
-    let directory: Vec<u8> = entries.iter().flat_map(Entry::directory_entry).collect();
     file.write_all(&directory)?;
-    let count = (entries.len() as u16).to_le_bytes();
-    let size = length(directory.len())?.to_le_bytes();
-    let start = length(offset)?.to_le_bytes();
+    let count = count.to_le_bytes();
+    let [size, start] = [length(directory.len())?, length(offset)?].map(u32::to_le_bytes);
     // First the numbers of this disk and of the directory's disk, last the length of a comment.
     let end = [
-        &b"PK\x05\x06"[..],
-        &[0; 4],
+        b"PK\x05\x06",
+        &[0; 4][..],
         &count,
         &count,
         &size,
@@ -195,42 +193,6 @@ fn archive(file: &mut dyn Write, arrays: impl Iterator<Item = Array>) -> io::Res
         &[0; 2],
     ];
     file.write_all(&end.concat())
-}
-
-impl Entry {
-    /// Returns the fields that stand both before the array and in the directory.
-    fn shared_fields(&self) -> Vec<u8> {
-        let name = self.name.len() as u16;
-        // The flags, the method (stored) and the time of day are 0, and so is the length of extras.
-        let [version, date, name] = [VERSION, DATE, name].map(u16::to_le_bytes);
-        let [checksum, bytes] = [self.checksum, self.bytes].map(u32::to_le_bytes);
-        let parts = [
-            &version[..],
-            &[0; 6],
-            &date,
-            &checksum,
-            &bytes,
-            &bytes,
-            &name,
-            &[0; 2],
-        ];
-        parts.concat()
-    }
-
-    /// Returns the entry of the directory.
-    fn directory_entry(&self) -> Vec<u8> {
-        let (version, offset) = (VERSION.to_le_bytes(), self.offset.to_le_bytes());
-        // The length of a comment, the disk and the attributes are 0.
-        let parts = [
-            &b"PK\x01\x02"[..],
-            &version,
-            &self.shared_fields(),
-            &[0; 10],
-            &offset,
-            self.name.as_bytes(),
-        ];
-        parts.concat()
-    }
 }
 
 /// Converts a length to the 32 bits of ZIP.

@@ -14,8 +14,7 @@ use a3_files::rounding::{DIGITS, short};
 use a3_files::visible::in_a_line;
 use a3_scenes::{Presentation, Surface};
 
-use super::format::Export;
-use super::geometry::{Geometry, positions};
+use super::geometry::{Export, Geometry, Job, positions};
 use crate::surfaces::Liquid;
 
 /// OBJ files that are being written.
@@ -52,10 +51,10 @@ impl Export for Obj {
 }
 
 /// Returns the approximate size of a file (bytes).
-pub fn size(surface: &Surface, simulation: &Simulation) -> f64 {
-    let geometry = Geometry::of(surface, simulation);
+pub fn size(job: Job) -> f64 {
+    let geometry = Geometry::of(job.surface, job.simulation);
     let (faces, lines) = (geometry.triangles.len(), geometry.lines.len());
-    let liquid = Liquid::of(simulation, |_| None);
+    let liquid = Liquid::of(job.simulation, |_| None);
     let vertices = geometry.vertices + liquid.corners.len();
     let faces = faces + liquid.triangles.len();
     73.0 * vertices as f64 + 42.0 * faces as f64 + 16.0 * lines as f64

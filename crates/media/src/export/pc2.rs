@@ -8,18 +8,15 @@
 //! point of every sample.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use a3_core::Simulation;
 use a3_files::failure::Failure;
 use a3_files::frames::FrameTimes;
 use a3_files::output::{self, Draft};
 use a3_files::terminal;
-use a3_scenes::Surface;
 
-use super::format::Export;
-use super::format::rows;
-use super::geometry::{Geometry, positions, vertices};
+use super::geometry::{Export, Geometry, Job, positions, rows, vertices};
 use super::obj;
 
 /// A `PointCache2` file that is being written, with its mesh.
@@ -41,19 +38,14 @@ pub fn size(simulation: &Simulation, frames: FrameTimes) -> f64 {
 }
 
 impl Pc2 {
-    /// Creates a file for these frames of the simulation.
-    pub fn new(
-        path: &Path,
-        surface: &Surface,
-        simulation: &Simulation,
-        frames: FrameTimes,
-    ) -> Result<Self, Failure> {
-        let mesh = path.with_extension("obj");
+    /// Creates a file.
+    pub fn new(job: Job) -> Result<Self, Failure> {
+        let (path, mesh) = (job.path, job.path.with_extension("obj"));
         output::check(&mesh, &["obj"])?;
         let mut draft = Draft::new(path)?;
-        let geometry = Geometry::of(surface, simulation);
+        let geometry = Geometry::of(job.surface, job.simulation);
         let kept = geometry.in_use();
-        header(&mut draft, kept.len(), frames.count).map_err(|e| draft.failure(&e))?;
+        header(&mut draft, kept.len(), job.frames.count).map_err(|e| draft.failure(&e))?;
         Ok(Self {
             draft,
             mesh: Draft::new(&mesh)?,

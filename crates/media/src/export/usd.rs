@@ -11,7 +11,6 @@ use std::collections::BTreeMap;
 use std::fmt::{Display, Write as _};
 use std::io;
 use std::io::{BufWriter, Write};
-use std::path::Path;
 
 use a3_core::Simulation;
 use a3_files::failure::Failure;
@@ -19,10 +18,8 @@ use a3_files::frames::FrameTimes;
 use a3_files::output::{Draft, Scratch};
 use a3_files::rounding::{DIGITS, short};
 use a3_files::visible::in_a_line;
-use a3_scenes::Surface;
 
-use super::format::Export;
-use super::geometry::{Geometry, positions, vertices};
+use super::geometry::{Export, Geometry, Job, positions, vertices};
 use crate::surfaces::Liquid;
 
 /// Width of curves and points, over the diagonal of the bounding box of the first frame.
@@ -90,15 +87,16 @@ pub fn size(simulation: &Simulation, frames: FrameTimes) -> f64 {
 }
 
 impl Usd {
-    /// Creates a file for these frames of the simulation.
-    pub fn new(
-        path: &Path,
-        surface: &Surface,
-        simulation: &Simulation,
-        frames: FrameTimes,
-    ) -> Result<Self, Failure> {
+    /// Creates a file.
+    pub fn new(job: Job) -> Result<Self, Failure> {
+        let Job {
+            path,
+            simulation,
+            frames,
+            ..
+        } = job;
         let draft = Draft::new(path)?;
-        let geometry = Geometry::of(surface, simulation);
+        let geometry = Geometry::of(job.surface, job.simulation);
         let samples = |names: &[&'static str]| -> Result<Vec<_>, Failure> {
             let samples = names.iter().map(|name| {
                 let file = BufWriter::new(Scratch::new(path)?);
@@ -106,53 +104,51 @@ impl Usd {
             });
             samples.collect()
         };
+        let prim = |[kind, name]: [&'static str; 2], vertices, fixed, names: &[&'static str]| {
+            Ok::<_, Failure>(Prim {
+                kind,
+                name,
+                vertices,
+                fixed,
+                samples: samples(names)?,
+            })
+        };
         let mut prims = vec![];
         if !geometry.triangles.is_empty() {
             let (vertices, corners) = renumbered(geometry.triangles.as_flattened());
             let (counts, corners) = (list(geometry.triangles.iter().map(|_| 3)), list(&corners));
-            prims.push(Prim {
-                kind: "Mesh",
-                name: "surface",
-                vertices,
-                fixed: format!(
-                    "{MESH}        {COUNTS} = {counts}\n        {INDICES} = {corners}\n"
-                ),
-                samples: samples(&[POINTS, EXTENT, NORMALS])?,
-            });
+            let fixed =
+                format!("{MESH}        {COUNTS} = {counts}\n        {INDICES} = {corners}\n");
+            let names = [POINTS, EXTENT, NORMALS];
+            prims.push(prim(["Mesh", "surface"], vertices, fixed, &names)?);
         }
         if !geometry.lines.is_empty() {
+            let vertices = geometry.lines.as_flattened().to_vec();
             let counts = list(geometry.lines.iter().map(|_| 2));
-            prims.push(Prim {
-                kind: "BasisCurves",
-                name: "springs",
-                vertices: geometry.lines.as_flattened().to_vec(),
-                fixed: format!(
-                    "        uniform token type = \"linear\"\n        int[] curveVertexCounts = {counts}\n"
-                ),
-                samples: samples(&[POINTS, EXTENT])?,
-            });
+            let fixed = format!(
+                "        uniform token type = \"linear\"\n        int[] curveVertexCounts = {counts}\n"
+            );
+            prims.push(prim(
+                ["BasisCurves", "springs"],
+                vertices,
+                fixed,
+                &[POINTS, EXTENT],
+            )?);
         }
         if !geometry.points.is_empty() {
-            prims.push(Prim {
-                kind: "Points",
-                name: "particles",
-                vertices: geometry.points.clone(),
-                fixed: String::new(),
-                samples: samples(&[POINTS, EXTENT])?,
-            });
+            let (vertices, fixed) = (geometry.points.clone(), String::new());
+            prims.push(prim(
+                ["Points", "particles"],
+                vertices,
+                fixed,
+                &[POINTS, EXTENT],
+            )?);
         }
         let network = simulation.model().network();
-        let liquid = if network.is_some_and(|network| network.fluid().is_some()) {
-            Some(Prim {
-                kind: "Mesh",
-                name: "liquid",
-                vertices: vec![],
-                fixed: MESH.into(),
-                samples: samples(&[POINTS, EXTENT, NORMALS, COUNTS, INDICES])?,
-            })
-        } else {
-            None
-        };
+        let names = [POINTS, EXTENT, NORMALS, COUNTS, INDICES];
+        let has_liquid = network.is_some_and(|network| network.fluid().is_some());
+        let liquid = has_liquid.then(|| prim(["Mesh", "liquid"], vec![], MESH.into(), &names));
+        let liquid = liquid.transpose()?;
         Ok(Self {
             draft,
             next: frames.first,

@@ -8,7 +8,7 @@ use a3_files::frames::{FrameTimes, Sequence};
 use a3_files::output;
 use a3_files::terminal;
 
-use super::format::{Film, TimedFilm};
+use super::shoot::{Film, TimedFilm};
 use super::{gif, mp4};
 
 /// Default frames per second: of a GIF, whose delays are whole hundredths of a second, and of other

@@ -14,7 +14,7 @@ use a3_files::failure::Failure;
 use a3_files::output::{Draft, not_written};
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 
-use super::format::Film;
+use super::shoot::Film;
 
 /// Shortest delay that players obey (1/100 s).
 const MIN_DELAY: f64 = 2.0;

@@ -1,11 +1,9 @@
 //! Films: pictures of a run, frame by frame, as a GIF, an MP4 or numbered files.
 
 mod begin;
-mod format;
 mod gif;
 mod mp4;
 mod shoot;
 
 pub use begin::{FilmOptions, begin, begin_new};
-pub use format::Film;
-pub use shoot::shoot;
+pub use shoot::{Film, shoot};

@@ -11,7 +11,7 @@ use a3_files::interrupt::{self, Cleanup, Temporary};
 use a3_files::output::{Draft, not_written};
 use a3_files::terminal;
 
-use super::format::Film;
+use super::shoot::Film;
 
 /// An MP4 that is being written: `ffmpeg` writes to a temporary file beside the target.
 pub struct Mp4 {
@@ -48,23 +48,14 @@ impl Mp4 {
         let log = tempfile::tempfile().map_err(Failure::run)?;
         let mut command = Command::new("ffmpeg");
         command
-            .args(["-hide_banner", "-loglevel", "error", "-y"])
-            .args(["-f", "rawvideo", "-pixel_format", "rgba"])
+            .args("-hide_banner -loglevel error -y -f rawvideo -pixel_format rgba".split(' '))
             .args(["-video_size", &format!("{width}x{height}")])
             .args(["-framerate", &fps.to_string(), "-i", "-"])
             // The colour space is that of high definition. It is stored, so that players need not
             // guess.
-            .args(["-vf", "scale=out_color_matrix=bt709:out_range=tv"])
-            .args([
-                "-colorspace",
-                "bt709",
-                "-color_primaries",
-                "bt709",
-                "-color_trc",
-                "bt709",
-            ])
-            .args(["-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p"])
-            .args(["-movflags", "+faststart", "-f", "mp4"])
+            .args("-vf scale=out_color_matrix=bt709:out_range=tv -colorspace bt709".split(' '))
+            .args("-color_primaries bt709 -color_trc bt709 -c:v libx264 -crf 18".split(' '))
+            .args("-pix_fmt yuv420p -movflags +faststart -f mp4".split(' '))
             .arg(target)
             .stdin(Stdio::piped())
             .stdout(Stdio::null())

@@ -1,16 +1,28 @@
-//! Filming of a run, from its first frame to its last.
+//! The interface of all film formats, and the filming of a run, from its first frame to its last.
 
 use std::path::Path;
 
 use a3_core::Simulation;
 use a3_files::bar::Bar;
 use a3_files::failure::Failure;
+use a3_files::frames::FrameTimes;
 use a3_files::progress;
 use a3_files::{interrupt, verdict};
 
-use super::format::TimedFilm;
 use crate::painter::Painter;
 use crate::show::Show;
+
+/// A film that is being written. Frames are rows from the top, four bytes a pixel.
+pub trait Film: Send {
+    /// Adds a frame.
+    fn add(&mut self, pixels: &[u8]) -> Result<(), Failure>;
+
+    /// Completes the film after its last frame.
+    fn finish(self: Box<Self>) -> Result<(), Failure>;
+}
+
+/// A film, and the times of its frames.
+pub type TimedFilm = (FrameTimes, Box<dyn Film>);
 
 /// Films the run. If it blows up or is interrupted, the film keeps the frames so far.
 pub fn shoot(

@@ -1,7 +1,6 @@
 //! Balls, lines and triangles that show the particles, springs and obstacles of a run.
 
 mod arrows;
-mod bodies;
 mod colouring;
 mod colours;
 mod ground;

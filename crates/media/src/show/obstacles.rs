@@ -1,13 +1,16 @@
-//! Obstacles as balls, solids and triangles.
+//! Obstacles and rigid bodies as balls, solids and triangles.
 
 use std::f64::consts::TAU;
 
 use a3_core::contact::{ClosedMesh, Obstacle, Shape};
+use a3_core::rigid::{Body, Part};
 use a3_core::{Network, Pose, Vector3};
 use a3_render::{Ball, Line, STEEL_LOOK, Solid, ramp};
 
-use super::colours::{INK, STEEL};
+use super::colouring::Colouring;
+use super::colours::{BODIES, INK, STEEL};
 use super::vectors::{perpendicular, to_f32};
+use crate::surfaces::tessellation::parts;
 
 /// Returns the drawn radius of a sphere or a capsule, as a share of its radius: a little smaller
 /// where only particles stay out of obstacles, so that the flat triangles between them stay outside
@@ -142,14 +145,17 @@ pub fn add_points(network: &Network, time: f64, points: &mut Vec<[f32; 4]>) {
     let share = f64::from(drawn_radius(network));
     for (mesh, obstacle) in meshes(network) {
         let pose = obstacle.at(time);
-        let corners = mesh.points();
-        let low = corners.iter().fold(corners[0], |low, point| low.inf(point));
-        let high = corners.iter().fold(low, |high, point| high.sup(point));
+        let [low, high] = extent(mesh);
         let inwards = (1.0 - share) * 0.5 * (high - low).min();
-        points.extend(corners.iter().zip(mesh.normals()).map(|(point, normal)| {
-            let [x, y, z] = to_f32(pose.of(point - normal * inwards).position);
-            [x, y, z, STEEL_LOOK as f32]
-        }));
+        points.extend(
+            mesh.points()
+                .iter()
+                .zip(mesh.normals())
+                .map(|(point, normal)| {
+                    let [x, y, z] = to_f32(pose.of(point - normal * inwards).position);
+                    [x, y, z, STEEL_LOOK as f32]
+                }),
+        );
     }
 }
 
@@ -191,36 +197,50 @@ pub fn outline(network: &Network, k: usize, time: f64, color: [f32; 4]) -> Vec<L
             });
             circles.collect()
         }
-        &Shape::Box { half_extents, axes } => box_edges(Vector3::zeros(), half_extents, axes, pose)
-            .map(|[a, b]| Line::new(a, b, 1.6, color))
-            .collect(),
+        &Shape::Box { half_extents, axes } => {
+            box_edges(Vector3::zeros(), half_extents, axes, pose, color).collect()
+        }
         Shape::Mesh(mesh) => {
-            let corners = mesh.points();
-            let low = corners.iter().fold(corners[0], |low, point| low.inf(point));
-            let high = corners.iter().fold(low, |high, point| high.sup(point));
+            let [low, high] = extent(mesh);
             let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-            box_edges(0.5 * (low + high), 0.5 * (high - low), axes, pose)
-                .map(|[a, b]| Line::new(a, b, 1.6, color))
-                .collect()
+            box_edges(0.5 * (low + high), 0.5 * (high - low), axes, pose, color).collect()
         }
     }
 }
 
-/// Returns the ends of the edges of a box around a point of a body (m).
+/// Returns the least and the largest coordinates of a mesh (m).
+fn extent(mesh: &ClosedMesh) -> [Vector3<f64>; 2] {
+    let corners = mesh.points();
+    let low = corners.iter().fold(corners[0], |low, point| low.inf(point));
+    let high = corners.iter().fold(low, |high, point| high.sup(point));
+    [low, high]
+}
+
+/// Returns the edges of a box around a point of a body, in a colour.
 fn box_edges(
     middle: Vector3<f64>,
     half_extents: Vector3<f64>,
     axes: [Vector3<f64>; 3],
     pose: Pose,
-) -> impl Iterator<Item = [[f32; 3]; 2]> {
+    color: [f32; 4],
+) -> impl Iterator<Item = Line> {
     let corner = move |k: usize| {
         let along = |axis: usize| if k >> axis & 1 == 1 { 1.002 } else { -1.002 };
         let arm = (0..3).map(|axis| axes[axis] * (along(axis) * half_extents[axis]));
         to_f32(pose.of(middle + arm.sum::<Vector3<f64>>()).position)
     };
+    edges_of_box(corner, color)
+}
+
+/// Returns the edges of a box, whose corners are numbered by their sides along each axis, in a
+/// colour.
+pub fn edges_of_box(
+    corner: impl Fn(usize) -> [f32; 3] + Copy,
+    color: [f32; 4],
+) -> impl Iterator<Item = Line> {
     (0..3).flat_map(move |axis| {
         let from = (0..8).filter(move |k| k >> axis & 1 == 0);
-        from.map(move |k| [corner(k), corner(k | 1 << axis)])
+        from.map(move |k| Line::new(corner(k), corner(k | 1 << axis), 1.6, color))
     })
 }
 
@@ -249,4 +269,50 @@ pub fn great_circles(
 fn axis(direction: Vector3<f64>, half: f64) -> [f32; 4] {
     let [x, y, z] = to_f32(direction);
     [x, y, z, half as f32]
+}
+
+/// Draws the bodies in the state y, in colours of their own or by values.
+pub fn draw_bodies(
+    network: &Network,
+    y: &[f64],
+    colouring: &Colouring,
+    balls: &mut Vec<Ball>,
+    solids: &mut Vec<Solid>,
+    lines: &mut Vec<Line>,
+) {
+    let firsts = network.bodies().iter().flat_map(first_points);
+    for ((k, part, pose), (_, first)) in parts(network, y).zip(firsts) {
+        let points = first..first + part.shape.simplices().points.len();
+        let paint = Paint {
+            color: BODIES[k % BODIES.len()],
+            // Values count only if each point has one.
+            values: points
+                .map(|i| colouring.vector(i))
+                .collect::<Option<_>>()
+                .unwrap_or_default(),
+        };
+        draw_shape(&part.shape, &pose, 1.0, &paint, balls, solids);
+        if let Shape::Sphere { radius } = part.shape {
+            lines.extend(great_circles(radius, Vector3::y(), pose, INK));
+        }
+    }
+}
+
+/// Returns the parts of a body, each with the number of the particle that is its first point.
+fn first_points(body: &Body) -> impl Iterator<Item = (&Part, usize)> {
+    let mut next = body.points().start;
+    body.parts().iter().map(move |part| {
+        let first = next;
+        next += part.shape.simplices().points.len();
+        (part, first)
+    })
+}
+
+/// Returns the parts that are meshes, each with the number of the particle that is its first point.
+pub fn meshes_of_bodies(network: &Network) -> impl Iterator<Item = (&ClosedMesh, usize)> {
+    let parts = network.bodies().iter().flat_map(first_points);
+    parts.filter_map(|(part, first)| match &part.shape {
+        Shape::Mesh(mesh) => Some((&**mesh, first)),
+        _ => None,
+    })
 }

@@ -8,8 +8,8 @@ use a3_render::{STEEL_LOOK, Spring as Drawn, Topology};
 use a3_scenes::{Presentation, Surface};
 
 use super::colours::INK;
+use super::obstacles;
 use super::springs::{KINDS, kind_look};
-use super::{bodies, obstacles};
 use crate::surfaces::whole_triangles;
 
 /// Parts of a scene, which change only with the scene or when something tears.
@@ -153,7 +153,7 @@ pub fn topology(surface: &Surface, simulation: &Simulation) -> Topology {
     let structural = topology.wires.len();
     add_edges(&mut topology, surface);
     let network = simulation.model().network();
-    for (mesh, first) in network.into_iter().flat_map(bodies::meshes) {
+    for (mesh, first) in network.into_iter().flat_map(obstacles::meshes_of_bodies) {
         let of = |i: &u32| first as u32 + i;
         let triangles = mesh.triangles().iter().map(|t| t.each_ref().map(of));
         topology.triangles.extend(triangles);
@@ -194,7 +194,7 @@ fn places_of_closed(
         start = end;
     }
     let network = simulation.model().network();
-    let bodies = network.into_iter().flat_map(bodies::meshes);
+    let bodies = network.into_iter().flat_map(obstacles::meshes_of_bodies);
     let mut next = n;
     let obstacles = network.into_iter().flat_map(obstacles::meshes);
     let obstacles = obstacles.map(|(mesh, _)| {

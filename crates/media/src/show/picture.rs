@@ -17,7 +17,7 @@ use super::manner::Manner;
 use super::parts::Parts;
 use super::springs::{KINDS, has_springs, kind_look, springs_of};
 use super::vectors::{perpendicular, to_f32};
-use super::{bodies, ground, obstacles, parts, wires};
+use super::{ground, obstacles, parts, wires};
 use crate::surfaces;
 
 /// Largest number of springs or particles without a surface that are drawn as coils and balls. More
@@ -209,7 +209,7 @@ impl Show {
             self.lines.extend(obstacles::meridians(network, time));
             let (balls, solids) = (&mut self.balls, &mut self.solids);
             let (state, lines) = (simulation.state(), &mut self.lines);
-            bodies::draw(network, state, &self.colouring, balls, solids, lines);
+            obstacles::draw_bodies(network, state, &self.colouring, balls, solids, lines);
         }
         self.field.draw(simulation, &self.points, &mut self.lines);
         if let Some(i) = self.springs_of {
@@ -480,10 +480,7 @@ pub fn edges(walls: &[[f32; 4]], spacing: f32) -> impl Iterator<Item = Line> + u
         };
     }
     let corner = move |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 1 { high[a] } else { low[a] });
-    (0..3).flat_map(move |axis| {
-        let from = (0..8).filter(move |k| k >> axis & 1 == 0);
-        from.map(move |from| Line::new(corner(from), corner(from | 1 << axis), 1.6, STEEL))
-    })
+    obstacles::edges_of_box(corner, STEEL)
 }
 
 /// Largest number of points of a trail.

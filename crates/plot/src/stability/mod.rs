@@ -63,16 +63,7 @@ impl StabilityRegions {
         let mut left = layout::headings(&mut figure, [&self.title, &self.subtitle, foot], level);
         layout::legend(&mut figure, &mut left, &self.entries(size, extent), size);
         let inner = Rect::new(left.x0 + 1.6 * size, left.y0, left.x1, left.y1 - 1.5 * size);
-        let (below, beside) = (
-            Rect {
-                x0: inner.x0,
-                ..left
-            },
-            Rect {
-                y1: inner.y1,
-                ..left
-            },
-        );
+        let (below, beside) = (left.across(inner.x0, left.x1), left.down_to(inner.y1));
         layout::label_below(&mut figure, below, "Re(h λ)", "", size);
         layout::label_left(&mut figure, beside, "Im(h λ)", "", size);
         let small = 0.85 * size;
@@ -94,10 +85,8 @@ impl StabilityRegions {
             return None;
         }
         if !level.full {
-            words
-                .iter_mut()
-                .flatten()
-                .for_each(|lines| lines.truncate(1));
+            let all = words.iter_mut().flatten();
+            all.for_each(|lines| lines.truncate(1));
         }
         let depth = |k: usize| words.iter().map(|words| words[k].len()).max();
         let depth = [0, 1].map(|k| depth(k).unwrap_or(0) as f64);
@@ -110,18 +99,12 @@ impl StabilityRegions {
                 y += 1.2 * size;
             }
             for line in subtitle {
-                figure.text(
-                    [cell.x0, y + 0.8 * small],
-                    Label::new(line, small).colour(GREY),
-                );
+                let label = Label::new(line, small).colour(GREY);
+                figure.text([cell.x0, y + 0.8 * small], label);
                 y += 1.2 * small;
             }
-            let area = Rect::new(
-                cell.x0 + 2.4 * small,
-                cell.y0 + above,
-                cell.x1,
-                cell.y1 - 1.3 * small,
-            );
+            let (x0, y0) = (cell.x0 + 2.4 * small, cell.y0 + above);
+            let area = Rect::new(x0, y0, cell.x1, cell.y1 - 1.3 * small);
             if area.width() < 4.5 * size || area.height() < 4.5 * size {
                 return None;
             }
@@ -133,12 +116,7 @@ impl StabilityRegions {
     /// Lists the entries of the legend.
     fn entries(&self, size: f64, extent: Extent) -> Vec<(String, Sign<'_>)> {
         let sample: Sign = Box::new(move |figure, [x, y]| {
-            let room = Rect::new(
-                x - 1.2 * size,
-                y - 0.45 * size,
-                x + 1.2 * size,
-                y + 0.45 * size,
-            );
+            let room = Rect::spread([x, y], 1.2 * size, 0.45 * size);
             figure.rect(room, region_paint(GREY, 0.1 * size));
         });
         let mark =

@@ -81,11 +81,9 @@ impl WorkPrecision {
     /// a place on them.
     fn axes(&self) -> Option<[Axis; 2]> {
         let range = |values: &mut dyn Iterator<Item = f64>| {
-            values.fold(None, |range, value| {
-                Some(range.map_or((value, value), |(low, high): (f64, f64)| {
-                    (low.min(value), high.max(value))
-                }))
-            })
+            let first = values.next()?;
+            let join = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
+            Some(values.fold((first, first), join))
         };
         let errors = &mut self
             .runs()
@@ -95,13 +93,9 @@ impl WorkPrecision {
         let (least, most) = range(errors)?;
         // Runs far below the resolution of the reference need no space, whereas a limit just left
         // of all runs is worth showing.
-        let limits = || {
-            self.problems
-                .iter()
-                .map(Problem::trusted)
-                .filter(|limit| *limit > 0.0)
-        };
-        let (lowest, _) = range(&mut limits()).unwrap_or((least, most));
+        let limits = self.problems.iter().map(Problem::trusted);
+        let limits = &mut limits.filter(|limit| *limit > 0.0);
+        let (lowest, _) = range(limits).unwrap_or((least, most));
         let least = if lowest > least / 30.0 {
             least.clamp(lowest / 30.0, lowest / 2.0)
         } else {
@@ -124,32 +118,11 @@ impl WorkPrecision {
         let mut left = layout::headings(&mut figure, words, level);
         layout::legend(&mut figure, &mut left, &self.entries(size, &x), size);
         let numbers = layout::widest(&y.between(0.0, left.height()), size) + 0.6 * size;
-        let inner = Rect::new(
-            left.x0 + 1.4 * size + numbers,
-            left.y0,
-            left.x1 - size,
-            left.y1 - 3.0 * size,
-        );
-        layout::label_below(
-            &mut figure,
-            Rect {
-                x0: inner.x0,
-                ..left
-            },
-            &self.x_label,
-            "more accurate",
-            size,
-        );
-        layout::label_left(
-            &mut figure,
-            Rect {
-                y1: inner.y1,
-                ..left
-            },
-            &self.y_label,
-            "faster",
-            size,
-        );
+        let x0 = left.x0 + 1.4 * size + numbers;
+        let inner = Rect::new(x0, left.y0, left.x1 - size, left.y1 - 3.0 * size);
+        let (below, beside) = (left.across(x0, left.x1), left.down_to(inner.y1));
+        layout::label_below(&mut figure, below, &self.x_label, "more accurate", size);
+        layout::label_left(&mut figure, beside, &self.y_label, "faster", size);
         let strip = if self.runs().any(Measurement::is_lost) {
             3.4 * size
         } else {
@@ -166,27 +139,19 @@ impl WorkPrecision {
             }
             if !problem.title.is_empty() {
                 let title = layout::elide(&problem.title, 1.1 * size, area.width());
-                figure.text(
-                    [area.x0, area.y0 + 0.85 * size],
-                    Label::new(&title, 1.1 * size).bold(),
-                );
+                let label = Label::new(&title, 1.1 * size).bold();
+                figure.text([area.x0, area.y0 + 0.85 * size], label);
                 area.y0 += 1.5 * size;
             }
-            let main = Rect {
-                x1: area.x1 - strip,
-                ..area
-            };
+            let main = area.across(area.x0, area.x1 - strip);
             if main.width() < 9.0 * size || main.height() < 7.0 * size {
                 return None;
             }
             let axes = [x.between(main.x0, main.x1), y.between(main.y1, main.y0)];
             // Lines and markers are finer in small panels.
             let fine = (main.width() / (22.0 * size)).clamp(0.6, 1.0) * size;
-            Drawing::new(problem, axes, main, size, fine).draw(
-                &mut figure,
-                strip,
-                [is_last, k % columns == 0],
-            );
+            let numbers = [is_last, k % columns == 0];
+            Drawing::new(problem, axes, main, size, fine).draw(&mut figure, strip, numbers);
         }
         Some(figure)
     }
@@ -204,10 +169,8 @@ impl WorkPrecision {
             seen.push((curve.style, &curve.name));
             let style = curve.style;
             let sign: Sign = Box::new(move |figure, [x, y]| {
-                figure.line(
-                    &[[x - 1.7 * size, y], [x + 1.7 * size, y]],
-                    style.pen(0.13 * size),
-                );
+                let line = [[x - 1.7 * size, y], [x + 1.7 * size, y]];
+                figure.line(&line, style.pen(0.13 * size));
                 style.draw_marker(figure, [x, y], 0.4 * size, Filling::Full);
                 // The line, the marker, and the name, which follows.
                 let next = figure.shapes.len();
@@ -236,18 +199,9 @@ impl WorkPrecision {
             figure.line(&line, front_pen(0.7 * size));
         });
         entries.push(("fastest for its error".to_owned(), front));
-        if self
-            .problems
-            .iter()
-            .any(|problem| x.is_inside(problem.trusted()))
-        {
-            let shade: Sign = Box::new(move |figure, [x, y]| {
-                let sample = Rect::new(
-                    x - 1.6 * size,
-                    y - 0.5 * size,
-                    x + 1.6 * size,
-                    y + 0.5 * size,
-                );
+        if self.problems.iter().any(|it| x.is_inside(it.trusted())) {
+            let shade: Sign = Box::new(move |figure, at| {
+                let sample = Rect::spread(at, 1.6 * size, 0.5 * size);
                 figure.rect(sample, shade_paint());
             });
             entries.push(("finer than reference".to_owned(), shade));

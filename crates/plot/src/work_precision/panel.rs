@@ -71,20 +71,10 @@ impl<'a> Drawing<'a> {
     pub fn draw(&mut self, figure: &mut Figure, strip: f64, numbers: [bool; 2]) {
         let (main, size) = (self.main, self.size);
         let limit = self.problem.trusted();
-        let shade = Rect {
-            x1: if limit > 0.0 {
-                self.axes[0].at(limit)
-            } else {
-                main.x0
-            },
-            ..main
-        };
+        let known = (limit > 0.0).then(|| self.axes[0].at(limit));
+        let shade = main.across(main.x0, known.unwrap_or(main.x0));
         figure.rect(shade, shade_paint());
-        let strip = Rect {
-            x0: main.x1,
-            x1: main.x1 + strip,
-            ..main
-        };
+        let strip = main.across(main.x1, main.x1 + strip);
         if strip.width() > 0.0 {
             figure.rect(strip, Paint::fill("#fbefec"));
             if numbers[0] {
@@ -100,8 +90,7 @@ impl<'a> Drawing<'a> {
             .collect();
         let line: Vec<_> = front.iter().map(|(_, run)| self.at(run)).collect();
         figure.line(&line, front_pen(0.9 * self.fine));
-        self.lines
-            .extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
+        self.keep_clear(&line);
         self.curves(figure);
         self.marks(figure);
         self.guide(figure);
@@ -114,6 +103,12 @@ impl<'a> Drawing<'a> {
         self.name_steps(figure, &front);
     }
 
+    /// Keeps names away from a line.
+    fn keep_clear(&mut self, line: &[Point]) {
+        let pieces = line.windows(2).map(|pair| [pair[0], pair[1]]);
+        self.lines.extend(pieces);
+    }
+
     /// Draws the spread of errors along a curve as a band: along the least errors, and back along
     /// the largest.
     fn band(&self, figure: &mut Figure, curve: &Curve) {
@@ -123,11 +118,9 @@ impl<'a> Drawing<'a> {
             let Some([least, most]) = run.spread.filter(|ends| ends[1].is_finite()) else {
                 continue;
             };
-            let at = |error| {
-                self.at(&Measurement {
-                    error,
-                    ..run.clone()
-                })
+            let at = |error: f64| {
+                let across = self.axes[0].at(error.max(f64::MIN_POSITIVE));
+                [across, self.axes[1].at(run.work)]
             };
             outline.push(at(least));
             back.push(at(most));
@@ -148,8 +141,7 @@ impl<'a> Drawing<'a> {
             let style = curve.style;
             let line: Vec<_> = curve.joined().iter().map(|run| self.at(run)).collect();
             figure.line(&line, style.pen(0.14 * self.fine));
-            self.lines
-                .extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
+            self.keep_clear(&line);
             let runs = curve.runs.iter().enumerate();
             for (r, run) in runs.filter(|(_, run)| run.is_drawn() && !run.is_lost()) {
                 let point = self.at(run);
@@ -173,8 +165,7 @@ impl<'a> Drawing<'a> {
             .map(|[error, work]| [self.axes[0].at(*error), self.axes[1].at(*work)])
             .collect();
         figure.line(&line, guide_pen(0.14 * self.fine));
-        let pieces = line.windows(2).map(|pair| [pair[0], pair[1]]);
-        self.lines.extend(pieces);
+        self.keep_clear(&line);
     }
 
     /// Draws runs that blew up as open markers beside the chart, next to each other if one would
@@ -203,11 +194,7 @@ impl<'a> Drawing<'a> {
     /// names.
     fn marks(&mut self, figure: &mut Figure) {
         let (size, radius) = (self.size, 0.55 * self.fine);
-        let style = CurveStyle {
-            colour: "#000000",
-            dash: &[],
-            marker: Marker::Star(5, 0.45),
-        };
+        let style = CurveStyle::new("#000000", &[], Marker::Star(5, 0.45));
         let drawn = || self.problem.marks.iter().filter(|mark| mark.is_drawn());
         let places: Vec<_> = drawn().map(|mark| self.place_of(mark)).collect();
         for (x, y) in &places {
@@ -247,11 +234,8 @@ impl<'a> Drawing<'a> {
 
     /// Draws the error of a run in which nothing moves, as a line with a label.
     fn still(&self, figure: &mut Figure) {
-        let Some(still) = self
-            .problem
-            .still
-            .filter(|still| self.axes[0].is_inside(*still))
-        else {
+        let is_seen = |still: &f64| self.axes[0].is_inside(*still);
+        let Some(still) = self.problem.still.filter(is_seen) else {
             return;
         };
         let x = self.axes[0].at(still);
@@ -262,10 +246,8 @@ impl<'a> Drawing<'a> {
         let label = Label::new("nothing moves", size).colour(GREY).turned();
         let places = (0..120).map(|k| {
             let side = if k % 2 == 0 { 1.1 } else { -0.4 };
-            [
-                x + side * size,
-                self.main.y1 - (0.6 + 0.3 * f64::from(k)) * size,
-            ]
+            let up = (0.6 + 0.3 * f64::from(k)) * size;
+            [x + side * size, self.main.y1 - up]
         });
         self.place(figure, label, places);
     }
@@ -301,10 +283,8 @@ impl<'a> Drawing<'a> {
             let label = Label::new(text, size).colour(GREY).turned();
             let places = (0..240).map(|k| {
                 let (column, row) = (f64::from(k / 30), f64::from(k % 30));
-                [
-                    shade.x0 + (1.1 + column) * size,
-                    shade.y1 - (0.6 + 0.6 * row) * size,
-                ]
+                let (right, up) = ((1.1 + column) * size, (0.6 + 0.6 * row) * size);
+                [shade.x0 + right, shade.y1 - up]
             });
             let fitting = places.filter(|at| shade.holds(label.room(*at)));
             if self.place(figure, label, fitting) {
@@ -347,10 +327,8 @@ impl<'a> Drawing<'a> {
                     for k in &runs {
                         let [x, y] = self.at(part[*k].1);
                         found.push([x + offset[0] * size - room.width(), y + offset[1] * size]);
-                        found.push([
-                            x + (offset[0] + 0.6) * size - room.width() / 2.0,
-                            y + (offset[1] + 0.3) * size,
-                        ]);
+                        let middle = x + (offset[0] + 0.6) * size - room.width() / 2.0;
+                        found.push([middle, y + (offset[1] + 0.3) * size]);
                     }
                 }
                 found.into_iter()
@@ -371,11 +349,8 @@ impl<'a> Drawing<'a> {
                 [-length / 2.0, 1.5 * size],
                 [0.8 * size, -0.4 * size],
             ];
-            self.place(
-                figure,
-                label,
-                places.into_iter().map(|[dx, dy]| [x + dx, y + dy]),
-            );
+            let places = places.into_iter().map(|[dx, dy]| [x + dx, y + dy]);
+            self.place(figure, label, places);
         }
     }
 }

@@ -96,7 +96,8 @@ impl Curve {
     /// the method beats in both error and work. The steps of an adaptive method at its limit of
     /// stability cost about the same at any error, and a line through them would only go back and
     /// forth.
-    pub(super) fn joined(&self) -> Vec<&Measurement> {
+    #[must_use]
+    pub fn joined(&self) -> Vec<&Measurement> {
         let unbeaten = unbeaten(std::slice::from_ref(self)).into_iter();
         unbeaten.map(|(_, run)| run).collect()
     }

@@ -3,7 +3,11 @@
 
 use std::io::Write;
 
-use a3_render::{Ball, Camera, Corner, Gpu, Line, Picture, Solid, Spring, Style, Topology};
+use a3_render::{
+    Ball, Camera, Corner, Floor, Gpu, Line, Liquid, OFFSCREEN_FORMAT, Offscreen, Picture, Renderer,
+    Solid, Spring, Style, Tile, Topology,
+};
+use image::RgbaImage;
 
 /// The adapter, or a visible message that there is none. `A3_REQUIRE_GPU` forbids to continue
 /// without.
@@ -17,6 +21,39 @@ pub fn gpu() -> Option<Gpu> {
         }
         Err(why) => panic!("A3_REQUIRE_GPU is set: {why}"),
     }
+}
+
+/// The floor of the pictures.
+pub const FLOOR: Floor = Floor {
+    height: 0.0,
+    solid: true,
+};
+
+/// Creates a renderer of offscreen pictures.
+pub fn renderer(gpu: &Gpu, topology: &Topology) -> Renderer {
+    Renderer::new(
+        gpu,
+        OFFSCREEN_FORMAT,
+        gpu.samples(OFFSCREEN_FORMAT),
+        topology,
+    )
+}
+
+/// Draws pictures, each in its part of a target of this size (px).
+pub fn draw_tiles(
+    gpu: &Gpu,
+    size: (u32, u32),
+    topology: &Topology,
+    pictures: &[(Picture, Tile)],
+) -> RgbaImage {
+    let (mut renderer, offscreen) = (renderer(gpu, topology), Offscreen::new(gpu, size).unwrap());
+    let pixels = offscreen.render_tiles(gpu, &mut renderer, pictures, |_, _| vec![]);
+    RgbaImage::from_raw(size.0, size.1, pixels.unwrap()).unwrap()
+}
+
+/// Draws a picture in a target of this size (px).
+pub fn draw(gpu: &Gpu, size: (u32, u32), topology: &Topology, picture: Picture) -> RgbaImage {
+    draw_tiles(gpu, size, topology, &[(picture, Tile::whole(size))])
 }
 
 /// A wavy sheet of 16 x 16 points above a floor, a ball, a line; no solids and no liquid.
@@ -48,32 +85,23 @@ impl Sheet {
                 0.0,
             ]);
             let k = i * N + j;
-            if j + 1 < N {
-                topology.wires.push([k, k + 1]);
+            let (has_right, has_below) = (j + 1 < N, i + 1 < N);
+            for (is_there, other) in [(has_right, k + 1), (has_below, k + N)] {
+                topology.wires.extend(is_there.then_some([k, other]));
             }
-            if i + 1 < N {
-                topology.wires.push([k, k + N]);
-            }
-            let spring = |other: u32, width: f32, color: [f32; 3]| Spring {
-                ends: [k, other],
-                width,
-                color,
-            };
-            if j + 2 < N {
-                topology.springs.push(spring(k + 2, 4.0, [0.3, 0.1, 0.55]));
-            }
-            if j + 1 < N {
+            for (is_there, other, width, color) in [
+                (j + 2 < N, k + 2, 4.0, [0.3, 0.1, 0.55]),
+                (has_right, k + 1, 1.6, [0.95, 0.42, 0.02]),
+                (has_right && has_below, k + N + 1, 1.6, [0.0, 0.33, 0.36]),
+            ] {
+                let ends = [k, other];
                 topology
                     .springs
-                    .push(spring(k + 1, 1.6, [0.95, 0.42, 0.02]));
+                    .extend(is_there.then_some(Spring { ends, width, color }));
             }
-            if i + 1 < N && j + 1 < N {
-                topology
-                    .springs
-                    .push(spring(k + N + 1, 1.6, [0.0, 0.33, 0.36]));
-                topology
-                    .triangles
-                    .extend([[k, k + N, k + 1], [k + 1, k + N, k + N + 1]]);
+            if has_right && has_below {
+                let halves = [[k, k + N, k + 1], [k + 1, k + N, k + N + 1]];
+                topology.triangles.extend(halves);
             }
         }
         let ball = Ball {
@@ -86,12 +114,8 @@ impl Sheet {
             radius: 0.06,
             color: [0.02, 0.02, 0.05, 1.0],
         };
-        let line = Line::new(
-            [-1.4, 0.2, 0.4],
-            [-0.9, 1.0, 0.9],
-            5.0,
-            [0.9, 0.4, 0.0, 1.0],
-        );
+        let orange = [0.9, 0.4, 0.0, 1.0];
+        let line = Line::new([-1.4, 0.2, 0.4], [-0.9, 1.0, 0.9], 5.0, orange);
         Self {
             topology,
             points,
@@ -104,25 +128,32 @@ impl Sheet {
         }
     }
 
+    /// Returns the sheet without its cloth, its balls and its lines, seen from the front.
+    pub fn empty(eye: [f32; 3], target: [f32; 3]) -> Self {
+        Self {
+            topology: Topology::default(),
+            points: vec![],
+            balls: vec![],
+            lines: vec![],
+            camera: Camera::look_at(eye, target),
+            ..Self::new()
+        }
+    }
+
     pub fn picture(&self, style: Style) -> Picture<'_> {
         Picture {
-            camera: self.camera,
             style,
-            scale: 1.0,
             points: &self.points,
             balls: &self.balls,
             solids: &self.solids,
             lines: &self.lines,
-            liquid: a3_render::Liquid {
+            liquid: Liquid {
                 corners: &self.liquid.0,
                 triangles: &self.liquid.1,
             },
-            floor: Some(a3_render::Floor {
-                height: 0.0,
-                solid: true,
-            }),
-            transparent: false,
+            floor: Some(FLOOR),
             dark: self.dark,
+            ..Picture::new(self.camera)
         }
     }
 }

@@ -1,16 +1,14 @@
-//! Cloths.
+//! Cloths, rectangular ones and those from files of triangles.
 
-use a3_core::elements::Sheet;
-use a3_core::{Grid, SpringKind, Vector3};
+use a3_core::elements::{Gas, GasLaw, Sheet};
+use a3_core::{Grid, SpringKind, SpringLaw, Vector3};
 
-use super::assembly::{Assembly, Body};
-use super::files::Files;
-use super::laws::{damping_time, strip};
-use super::skins::SkinSpec;
-use crate::budget::STRIPS;
-use crate::check::{at, at_least, positive_one};
-use crate::description::{Cloth, Spot};
-use crate::fault::Fault;
+use super::assembly::{Assembly, Body, Files, SkinSpec, placed};
+use super::motion::extreme;
+use super::springs::{damping_time, strip};
+use crate::budget::{SPRINGS, STRIPS, TRIANGLES};
+use crate::description::{Cloth, MeshCloth, Spot};
+use crate::fault::{Fault, at, at_least, positive, positive_one};
 
 impl Cloth {
     fn checked_grid(&self) -> Result<Grid, Fault> {
@@ -41,9 +39,10 @@ impl Cloth {
             _ => (self.down, -Vector3::y()),
         };
         let axis = given.map_or(usual, Vector3::from);
-        axis.try_normalize(1e-9)
-            .filter(|axis| axis.iter().all(|x| x.is_finite()))
-            .ok_or_else(|| Fault::new(key, "it must be a direction, such as [1, 0, 0]"))
+        let axis = axis
+            .try_normalize(1e-9)
+            .filter(|axis| axis.iter().all(|x| x.is_finite()));
+        axis.ok_or_else(|| Fault::new(key, "it must be a direction, such as [1, 0, 0]"))
     }
 }
 
@@ -90,9 +89,10 @@ impl Body for Cloth {
         for i in 0..rows {
             let share = i as f64 / (rows - 1) as f64;
             for [along, outwards] in &row {
-                assembly.positions.push(
-                    top + right * (along - middle) + out * *outwards + down * (i as f64 * spacing),
-                );
+                let in_row = top + right * (along - middle) + out * *outwards;
+                assembly
+                    .positions
+                    .push(in_row + down * (i as f64 * spacing));
                 assembly.velocities.push(velocity + sway * share);
             }
         }
@@ -135,10 +135,88 @@ fn gathered(cols: usize, spacing: f64, folds: f64, turn: f64) -> Vec<[f64; 2]> {
         [libm::cos(angle) * spacing, libm::sin(angle) * spacing]
     });
     let mut here = [0.0, 0.0];
-    steps
-        .map(|[along, out]| {
-            let next = [here[0] + along, here[1] + out];
-            std::mem::replace(&mut here, next)
-        })
-        .collect()
+    let places = steps.map(|[along, out]| {
+        let next = [here[0] + along, here[1] + out];
+        std::mem::replace(&mut here, next)
+    });
+    places.collect()
+}
+
+/// Returns the volume (m3) that triangles between these positions (m) enclose; it is negative if
+/// they are clockwise from outside.
+fn volume(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> f64 {
+    let of_one = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| Vector3::from(positions[i as usize]));
+        a.dot(&b.cross(&c)) / 6.0
+    };
+    triangles.iter().map(of_one).sum()
+}
+
+impl Body for MeshCloth {
+    fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault> {
+        let mesh = files.read(&self.file)?;
+        files.budget.spend("", mesh.triangles.len(), TRIANGLES)?;
+        let mesh = mesh.welded();
+        refuse!(if mesh.triangles.is_empty() => "file": "the mesh has no triangles");
+        files.spend(mesh.positions.len(), &[(3 * mesh.triangles.len(), SPRINGS)])?;
+        let scale = self.scale.unwrap_or(1.0);
+        at("scale", positive("it", scale))?;
+        at("density", positive("it", self.density))?;
+        let scaled = mesh.scaled(scale);
+        let areas = scaled.areas();
+        let masses: Vec<_> = areas.iter().map(|area| area * self.density).collect();
+        if let Some(bad) = masses.iter().position(|m| !m.is_finite() || *m <= 0.0) {
+            let (number, [x, y, z]) = (mesh.number(bad), mesh.positions[bad]);
+            let point = format!("point {number} at ({x}, {y}, {z})");
+            refuse!("file": "the triangles around {point} have no area");
+        }
+        let mean = masses.iter().sum::<f64>() / masses.len() as f64;
+        let structural = self.stiffness[0];
+        let time = damping_time(self.damping, self.damping_ratio, mean, structural)?;
+        let law = |kind, length| {
+            let k = self.stiffness[usize::from(kind == SpringKind::Bend)];
+            SpringLaw::new(k, length, k * time)
+        };
+        let springs = at("stiffness", scaled.springs(law))?;
+        let points = scaled.positions.iter().map(|p| Vector3::from(*p));
+        let places = points.map(placed(self.at.unwrap_or_default(), self.rotation));
+        let first = assembly.add_particles(&masses, places, self.velocity);
+        let law = match (self.pressure, self.fill) {
+            (Some(_), Some(_)) => return Err(Fault::not_both("pressure", "fill")),
+            (Some(pressure), None) => Some(("pressure", GasLaw::Pressure(pressure))),
+            (None, Some(fill)) => {
+                at("fill", positive("it", fill))?;
+                let volume = volume(&scaled.positions, &mesh.triangles).abs();
+                at("fill", positive("the volume of the mesh", volume))?;
+                Some(("fill", GasLaw::Amount(fill * volume)))
+            }
+            (None, None) => None,
+        };
+        if let Some((key, law)) = law {
+            let mut triangles = mesh.triangles.clone();
+            if volume(&scaled.positions, &triangles) < 0.0 {
+                for t in &mut triangles {
+                    t.swap(1, 2);
+                }
+            }
+            for i in triangles.iter_mut().flatten() {
+                *i += first as u32;
+            }
+            assembly.gases.push(at(key, Gas::new(law, triangles))?);
+        }
+        let skin = SkinSpec::of(self, assembly.gravity, [structural, time]);
+        let skins = skin.fitted(&masses, &scaled.heights())?;
+        assembly.skins.extend(skins);
+        assembly.add_surface(first, mesh.triangles.iter().copied());
+        assembly.add_springs(first, springs, self.tension_only);
+        assembly.strain_limit = self.strain_limit;
+        Ok(())
+    }
+
+    fn spot(&self, spot: Spot, positions: &[Vector3<f64>]) -> Option<Vec<usize>> {
+        match spot {
+            Spot::Top | Spot::Bottom => extreme(spot, positions),
+            _ => None,
+        }
+    }
 }

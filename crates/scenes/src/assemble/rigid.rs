@@ -1,19 +1,16 @@
 //! Rigid bodies, and their points that a fluid touches: particles of the fluid that the body
 //! carries.
 
-use a3_core::contact::{Shape, Skin};
+use a3_core::contact::Shape;
 use a3_core::rigid::{Body as Rigid, MassProperties, Part, Rotation};
 use a3_core::{Vector3, rotation};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 
-use super::assembly::{Assembly, Body};
-use super::files::Files;
-use super::places::LAYERS;
-use super::skins::point_skin;
+use super::assembly::{Assembly, Body, Files, point_skin};
+use super::fluid::LAYERS;
 use crate::budget::{PARTS, SMOOTHED};
-use crate::check::{at, at_least, key_of, positive, positive_one};
 use crate::description::{Fluid, Keys, PartSpec, RigidBody};
-use crate::fault::Fault;
+use crate::fault::{Fault, at, at_least, key_of, positive, positive_one};
 
 /// Default thickness of a body, relative to its smallest part.
 const THICKNESS: f64 = 0.02;
@@ -32,10 +29,8 @@ fn of_parts(parts: &[Part]) -> Result<MassProperties, Fault> {
 impl RigidBody {
     /// Returns the parts, relative to the origin, and the smallest extent of one (m).
     fn loaded(&self, files: &mut Files) -> Result<(Vec<Part>, f64), Fault> {
-        if self.parts.is_empty() {
-            let why = "a body needs at least one, such as [{ box = [1, 1, 1] }]";
-            return Err(Fault::new("parts", why));
-        }
+        refuse!(if self.parts.is_empty() => "parts":
+            "a body needs at least one, such as [{{ box = [1, 1, 1] }}]");
         let (mut parts, mut smallest) = (vec![], f64::INFINITY);
         for (k, spec) in self.parts.iter().enumerate() {
             let within = |fault: Fault| fault.within(&key_of("parts", k, self.parts.len()));
@@ -101,11 +96,9 @@ impl Body for RigidBody {
         let of_point = [0.25 * properties.mass, thickness];
         let rolling = self.rolling_friction;
         at("rolling_friction", at_least(0.0, "it", rolling))?;
-        let skin = Skin {
-            rolling,
-            // A face rests on several points.
-            ..point_skin(self.skin(), assembly.gravity, of_point)?
-        };
+        // A face rests on several points.
+        let mut skin = point_skin(self.skin(), assembly.gravity, of_point)?;
+        skin.rolling = rolling;
         assembly.skins.extend(vec![skin; count]);
         if !wet.is_empty() {
             let end = made.points().end;
@@ -119,10 +112,8 @@ impl Body for RigidBody {
 /// Returns the shape of a part, and its smallest extent (m).
 fn shape(spec: &PartSpec, files: &mut Files) -> Result<(Shape, f64), Fault> {
     let turn = Vector3::from(spec.rotation.unwrap_or_default());
-    if spec.scale.is_some() && spec.file.is_none() {
-        let why = "it is that of a `file`, which is missing";
-        return Err(Fault::new("scale", why));
-    }
+    refuse!(if spec.scale.is_some() && spec.file.is_none() => "scale":
+        "it is that of a `file`, which is missing");
     match (spec.cuboid, spec.ball, spec.capsule, &spec.file) {
         (Some(size), None, None, None) => {
             for edge in size {
@@ -143,10 +134,7 @@ fn shape(spec: &PartSpec, files: &mut Files) -> Result<(Shape, f64), Fault> {
             Ok((Shape::Capsule { ends, radius }, 2.0 * radius))
         }
         (None, None, None, Some(file)) => files.solid(file, spec.scale, spec.rotation),
-        _ => Err(Fault::new(
-            "",
-            "a part is one of box, ball, capsule and file, such as { ball = 0.2 }",
-        )),
+        _ => refuse!("": "a part is one of box, ball, capsule and file, such as {{ ball = 0.2 }}"),
     }
 }
 
@@ -168,11 +156,7 @@ const DEPTHS: u32 = 40;
 /// (m): those of a lattice of the fluid's spacing around the middle of its parts, up to a few
 /// layers below its surface. There are as many as the volume has cells, so that the body displaces
 /// its volume. In two dimensions, the points in the plane of the origin and in the parts are taken.
-pub(super) fn soaked(
-    parts: &[Part],
-    volume: f64,
-    fluid: &Fluid,
-) -> Result<Vec<Vector3<f64>>, Fault> {
+fn soaked(parts: &[Part], volume: f64, fluid: &Fluid) -> Result<Vec<Vector3<f64>>, Fault> {
     let spacing = fluid.spacing;
     at("spacing", positive("it", spacing)).map_err(|fault| fault.within("fluid"))?;
     let (low, high) = bounds(parts);
@@ -181,26 +165,18 @@ pub(super) fn soaked(
     // One more cell on each side; if the count is odd, half of that cell is outside.
     let counts = size.map(|size| (size / spacing).round() + 2.0);
     let counts = Vector3::new(counts.x, counts.y, if flat { 1.0 } else { counts.z });
-    if counts.product() > MAX_POINTS {
-        let why = format!(
-            "the fluid's spacing {spacing} is too fine for this body, which is {} x {} x {} m large",
-            size.x, size.y, size.z
-        );
-        return Err(Fault::new("parts", why));
+    refuse!(if counts.product() > MAX_POINTS => "parts":
+        "the fluid's spacing {spacing} is too fine for this body, which is {} x {} x {} m large",
+        size.x, size.y, size.z);
+    let mut first = 0.5 * (low + high) - 0.5 * spacing * (counts - Vector3::repeat(1.0));
+    if flat {
+        first.z = 0.0;
     }
-    let first = 0.5 * (low + high) - 0.5 * spacing * (counts - Vector3::repeat(1.0));
-    let first = if flat {
-        Vector3::new(first.x, first.y, 0.0)
-    } else {
-        first
-    };
     let [nx, ny, nz] = [counts.x, counts.y, counts.z].map(|count| count as usize);
     let all = (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])));
     let near = all.map(|index| {
         let place = first + spacing * Vector3::from(index.map(|i| i as f64));
-        let distances = parts
-            .iter()
-            .map(|part| part.shape.distance(place - part.at));
+        let distances = parts.iter().map(|it| it.shape.distance(place - it.at));
         (place, distances.fold(f64::INFINITY, f64::min))
     });
     let mut near: Vec<_> = near.filter(|(_, distance)| *distance < spacing).collect();
@@ -218,7 +194,7 @@ pub(super) fn soaked(
 /// Returns the sentence that a liquid can pass through walls of a body with this number of points,
 /// if some are too thin: the points of a wall stop it if there are two layers of them. A body of
 /// one convex part has no walls, but needs points.
-pub(super) fn leak(parts: &[Part], points: usize, fluid: &Fluid) -> Option<String> {
+fn leak(parts: &[Part], points: usize, fluid: &Fluid) -> Option<String> {
     let needed = LEAST_LAYERS * fluid.spacing;
     let is_convex = matches!(parts, [part] if !matches!(part.shape, Shape::Mesh(_)));
     if is_convex {
@@ -269,12 +245,8 @@ fn sides(part: &Part) -> Vec<[Vector3<f64>; 2]> {
         let [a, b, c] = corners.map(|i| part.at + simplices.points[i as usize]);
         [(a + b + c) / 3.0, 0.5 * (b - a).cross(&(c - a))]
     };
-    simplices
-        .triangles
-        .iter()
-        .map(side)
-        .filter(|[_, area]| area.norm() > 0.0)
-        .collect()
+    let sides = simplices.triangles.iter().map(side);
+    sides.filter(|[_, area]| area.norm() > 0.0).collect()
 }
 
 /// Returns the distance (m) from the surface below which about `count` of the places lie. Places at

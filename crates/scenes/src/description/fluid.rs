@@ -52,11 +52,8 @@ impl Keys for Fluid {}
 impl Fluid {
     /// Returns a fluid of the same liquid that is one particle, far away.
     pub(crate) fn drop_of(&self) -> Self {
-        let depth = if self.dimensions == 2 {
-            0.0
-        } else {
-            self.spacing
-        };
+        let is_flat = self.dimensions == 2;
+        let depth = if is_flat { 0.0 } else { self.spacing };
         Self {
             shape: FluidShape::Box,
             size: [self.spacing, self.spacing, depth],

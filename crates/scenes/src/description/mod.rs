@@ -1,11 +1,8 @@
 //! Keys of scene files, as plain data. `docs/scenes.md` shows them by example.
 
 mod bodies;
-mod constraints;
 mod fluid;
 mod motion;
-mod obstacles;
-mod rigid;
 
 use a3_core::Vector3;
 use schemars::JsonSchema;
@@ -19,17 +16,17 @@ use crate::reader::{self, Places};
 
 use bodies::SharedKeys;
 pub use bodies::{BucklingSpec, RegionSpec, SpringSpec, SwingSpec, WindSpec};
-pub use bodies::{Chain, Circle, Cloth, Jelly, MeshCloth, Particles, Solid, SolidModel};
-pub(crate) use bodies::{Keys, SkinKeys};
-pub use constraints::{
-    BallSpec, CircleSpec, ConstraintSpec, HingeSpec, JointSpec, LineSpec, SliderSpec,
+pub use bodies::{
+    Chain, Circle, Cloth, Jelly, MeshCloth, PartSpec, Particles, RigidBody, Solid, SolidModel,
 };
+pub(crate) use bodies::{Keys, SkinKeys};
 pub use fluid::{Fluid, FluidShape, Inflow, Outflow, Tank};
-pub use motion::{Pin, Shift, Sine, Spot, Triple, Turn};
-pub use obstacles::{BoxSpec, CapsuleSpec, ObstacleSpec, SphereSpec};
-pub use obstacles::{Floor, FloorSpec};
-pub(crate) use obstacles::{Movable, ObstacleKeys};
-pub use rigid::{PartSpec, RigidBody};
+pub use motion::{
+    BallSpec, BoxSpec, CapsuleSpec, CircleSpec, ConstraintSpec, Floor, FloorSpec, HingeSpec,
+    JointSpec, LineSpec, ObstacleSpec, Pin, Shift, Sine, SliderSpec, SphereSpec, Spot, Triple,
+    Turn,
+};
+pub(crate) use motion::{Movable, ObstacleKeys};
 
 /// Description of a scene: its bodies, the forces and obstacles that act on them, how it is run,
 /// and where it is seen from. Units are m, kg, s, N and rad.

@@ -16,6 +16,12 @@ pub(super) const MAX_TRIANGLES: usize = 2 * MAX_POINTS;
 /// Largest number of tetrahedra in a file.
 pub(super) const MAX_TETRAHEDRA: usize = MAX_POINTS;
 
+/// Checks that there are not too many triangles.
+pub(super) fn check_triangles(count: usize) -> Result<(), String> {
+    refuse!(if count > MAX_TRIANGLES => "there are more than {MAX_TRIANGLES} triangles");
+    Ok(())
+}
+
 /// Height of a triangle relative to its longest side, below which it is a sliver.
 const SLIVER: f64 = 1e-3;
 
@@ -41,6 +47,13 @@ impl Mesh {
         self.numbers.get(i).copied().unwrap_or(i as u64)
     }
 
+    /// Adds a point, unless there are too many.
+    pub(super) fn add_point(&mut self, at: Triple) -> Result<(), String> {
+        refuse!(if self.positions.len() == MAX_POINTS => "there are more than {MAX_POINTS} points");
+        self.positions.push(at);
+        Ok(())
+    }
+
     /// Returns the mesh with points at the same place merged, without triangles that have two equal
     /// corners, and without points that are in no triangle.
     #[must_use]
@@ -58,22 +71,19 @@ impl Mesh {
             *place
         };
         let corners = self.triangles.iter().map(|t| t.map(&mut corner));
-        mesh.triangles = corners
-            .filter(|[a, b, c]| a != b && b != c && c != a)
-            .collect();
+        let has_three = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+        mesh.triangles = corners.filter(has_three).collect();
         mesh
     }
 
     /// Returns the mesh magnified by a factor.
     pub(crate) fn scaled(&self, factor: f64) -> Self {
-        let positions = self.positions.iter().map(|p| p.map(|x| x * factor));
-        Self {
-            positions: positions.collect(),
-            triangles: self.triangles.clone(),
-            tetrahedra: self.tetrahedra.clone(),
-            numbers: self.numbers.clone(),
-            tetrahedron_numbers: self.tetrahedron_numbers.clone(),
-        }
+        let mut mesh = self.clone();
+        mesh.positions
+            .iter_mut()
+            .flatten()
+            .for_each(|x| *x *= factor);
+        mesh
     }
 
     /// Finds the smallest height of the triangles around each point (m). A sliver counts as higher
@@ -116,10 +126,8 @@ impl Mesh {
         let mut edges: BTreeMap<[u32; 2], Vec<u32>> = BTreeMap::new();
         for &[a, b, c] in &self.triangles {
             for (from, to, opposite) in [(a, b, c), (b, c, a), (c, a, b)] {
-                edges
-                    .entry([from.min(to), from.max(to)])
-                    .or_default()
-                    .push(opposite);
+                let edge = [from.min(to), from.max(to)];
+                edges.entry(edge).or_default().push(opposite);
             }
         }
         let across = edges.values().filter_map(|opposite| match opposite[..] {
@@ -128,10 +136,8 @@ impl Mesh {
         });
         // The corners across an edge may be neighbours themselves, as in a tetrahedron.
         let across = across.filter(|pair| !edges.contains_key(pair));
-        let all = edges
-            .keys()
-            .map(|pair| (SpringKind::Structural, *pair))
-            .chain(across.map(|pair| (SpringKind::Bend, pair)));
+        let along = edges.keys().map(|pair| (SpringKind::Structural, *pair));
+        let all = along.chain(across.map(|pair| (SpringKind::Bend, pair)));
         all.map(|(kind, ends)| {
             let [i, j] = ends.map(|i| i as usize);
             let [a, b] = [i, j].map(|i| Vector3::from(self.positions[i]));
@@ -160,10 +166,8 @@ pub(super) fn places(positions: &[Triple]) -> Vec<u32> {
         }
     }
     let size = [0, 1, 2].map(|axis| high[axis] - low[axis]);
-    let near = WELD_DISTANCE
-        * size
-            .into_iter()
-            .fold(f64::MIN_POSITIVE / WELD_DISTANCE, f64::max);
+    let least = f64::MIN_POSITIVE / WELD_DISTANCE;
+    let near = WELD_DISTANCE * size.into_iter().fold(least, f64::max);
     // Coordinates in which the cells have sides of 1 and begin at 0.
     let scaled = |i: usize| [0, 1, 2].map(|axis| (positions[i][axis] - low[axis]) / (CELL * near));
     let cell = |i: usize| scaled(i).map(|x| x.floor() as u32);

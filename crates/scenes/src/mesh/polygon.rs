@@ -4,6 +4,7 @@
 
 use robust::{Coord, orient2d};
 
+use super::data::{Mesh, check_triangles};
 use crate::description::Triple;
 
 /// Largest number of tests for the faces of a file, of ears and of corners in ears.
@@ -22,9 +23,69 @@ enum Asked {
     Nothing,
 }
 
+/// Faces of a file, as numbers of points.
+#[derive(Default)]
+pub(super) struct Faces {
+    corners: Vec<u32>,
+    /// End of the corners of each face.
+    ends: Vec<u32>,
+    /// Number of triangles that the faces make.
+    triangles: usize,
+}
+
+impl Faces {
+    /// Returns the place of the first corner of the face that is not ended.
+    fn begin(&self) -> usize {
+        self.ends.last().map_or(0, |end| *end as usize)
+    }
+
+    /// Adds a corner to the face that is not ended.
+    pub fn add_corner(&mut self, corner: u32) -> Result<(), String> {
+        self.corners.push(corner);
+        self.triangles += usize::from(self.corners.len() - self.begin() > 2);
+        check_triangles(self.triangles)
+    }
+
+    /// Ends a face, and returns whether it is one: it has three corners or more.
+    pub fn end(&mut self) -> bool {
+        let is_face = self.corners.len() - self.begin() > 2;
+        if is_face {
+            self.ends.push(self.corners.len() as u32);
+        } else {
+            self.corners.truncate(self.begin());
+        }
+        is_face
+    }
+
+    /// Finds the first face with a corner that is not among `count` points, and that corner.
+    pub fn beyond(&self, count: usize) -> Option<(usize, u32)> {
+        let k = self.corners.iter().position(|i| *i as usize >= count)?;
+        let face = self.ends.partition_point(|end| *end as usize <= k);
+        Some((face, self.corners[k]))
+    }
+
+    /// Cuts all faces into triangles of the mesh. `too_many` says which face, of so many corners,
+    /// takes too many tests.
+    pub fn cut(
+        &self,
+        mesh: &mut Mesh,
+        too_many: impl Fn(usize, usize) -> String,
+    ) -> Result<(), String> {
+        let (mut cutter, mut first) = (Cutter::default(), 0);
+        mesh.triangles.reserve_exact(self.triangles);
+        for (k, end) in self.ends.iter().enumerate() {
+            let face = &self.corners[first..*end as usize];
+            let cut = cutter.cut(face, &mesh.positions, &mut mesh.triangles);
+            cut.ok_or_else(|| too_many(k, face.len()) + ": split them")?;
+            first = *end as usize;
+        }
+        Ok(())
+    }
+}
+
 /// Cutter of faces into triangles.
 #[derive(Default)]
-pub(super) struct Cutter {
+struct Cutter {
     /// Number of tests in all faces so far.
     tests: usize,
     /// Corners of the face in its plane, where they are in anticlockwise order, and in space.
@@ -41,7 +102,7 @@ pub(super) struct Cutter {
 impl Cutter {
     /// Adds the triangles of a face, whose corners are given as numbers of points; `None` if that
     /// takes too many tests.
-    pub fn cut(
+    fn cut(
         &mut self,
         face: &[u32],
         positions: &[Triple],
@@ -179,11 +240,8 @@ impl Cutter {
                 }
             }
             // Two neighbouring ears make thin triangles.
-            k = if is_nothing {
-                after
-            } else {
-                self.ear(after)[2]
-            };
+            let [_, _, next] = self.ear(after);
+            k = if is_nothing { after } else { next };
             (left, looked, is_stale) = (left - 1, 0, true);
             if asked != Asked::Clear {
                 asked = Asked::Clear;

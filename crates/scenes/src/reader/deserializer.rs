@@ -4,13 +4,13 @@
 use std::vec;
 
 use serde::de::value::{MapDeserializer, SeqDeserializer, StrDeserializer};
-use serde::de::{self, DeserializeSeed, Expected, IntoDeserializer, Unexpected, Visitor};
-use serde::{Deserialize, Deserializer, forward_to_deserialize_any};
+use serde::de::{DeserializeSeed, Expected, IntoDeserializer, Unexpected, Visitor};
+use serde::{Deserialize, Deserializer, de, forward_to_deserialize_any};
 
 use super::value::{Entry, Found, Value};
-use crate::check::{beyond, within};
-use crate::fault::Fault;
-use crate::material::{self, Given};
+use crate::fault::{Fault, beyond, within};
+use crate::material;
+use crate::material::Given;
 use crate::text::line;
 use crate::wording::{
     WHOLE, list_of, missing, quoted, too_large, unknown_choice, unknown_key, wrong_length,

@@ -1,7 +1,9 @@
 //! Edits of scenes: what stays has the same state, and names the same particles.
 
-use a3_core::{Constraint, Network, Scene};
-use a3_scenes::{ConstraintSpec, Description, Edit, PartSpec, RigidBody};
+use a3_core::Constraint;
+use a3_scenes::{ConstraintSpec, Edit, PartSpec, RigidBody};
+
+use super::*;
 
 /// A scene with bodies of many kinds, which name one another's particles.
 const MANY: &str = "trail = 21\n\
@@ -19,15 +21,6 @@ const MANY: &str = "trail = 21\n\
     [[body]]\nparts = [{ ball = 0.3 }]\nmass = 1\nat = [-3, 1, 0]\nspin = [0, 3, 0]\n\
     [[body]]\nparts = [{ box = [0.4, 0.4, 0.4] }]\nmass = 2\nat = [-5, 1, 0]\nspin = [1, 0, 0]\n";
 
-fn built(description: &Description) -> Scene {
-    let built = description.build(None, &mut |_| Err("no file".into()));
-    built.unwrap_or_else(|fault| panic!("{fault}")).scene
-}
-
-fn network(scene: &Scene) -> &Network {
-    scene.model.network().unwrap()
-}
-
 /// What belongs to a particle: its state, its mass, and its pin.
 fn particle(scene: &Scene, i: usize) -> ([f64; 6], f64, bool) {
     let (n, network) = (scene.model.particles(), network(scene));
@@ -42,9 +35,8 @@ fn links(scene: &Scene, number: impl Fn(usize) -> Option<usize>) -> Vec<[usize; 
     let constraints = network.constraints().iter();
     let constraints = constraints.filter_map(|it| Some([it.ends().0, it.ends().1?]));
     let all = springs.chain(constraints);
-    let mut all: Vec<_> = all
-        .filter_map(|[i, j]| Some([number(i)?, number(j)?]))
-        .collect();
+    let pairs = all.filter_map(|[i, j]| Some([number(i)?, number(j)?]));
+    let mut all: Vec<_> = pairs.collect();
     all.sort_unstable();
     all
 }
@@ -66,24 +58,17 @@ fn ball(at: [f64; 3]) -> RigidBody {
 /// Every edit of a scene that begins as it is built, and of one that begins in a given state.
 #[test]
 fn an_edit_leaves_all_else_as_it_was() {
-    let own = Description::parse(MANY).unwrap();
+    let own = read(MANY);
     let scene = built(&own);
     let n = scene.model.particles();
     let mut given = own.clone();
-    let rows = |half: &[f64]| {
-        (0..n)
-            .map(|i| [0, 1, 2].map(|axis| half[axis * n + i]))
-            .collect()
-    };
-    let rotations = scene.state[6 * n..].chunks_exact(7);
+    let row = |first: usize, i: usize| [0, 1, 2].map(|axis| scene.state[first + axis * n + i]);
+    let rotations = [0, 1].map(|k| &scene.state[6 * n + 7 * k..]);
     given.state = Some(a3_scenes::State {
-        positions: rows(&scene.state[..3 * n]),
-        velocities: rows(&scene.state[3 * n..]),
-        orientations: rotations
-            .clone()
-            .map(|r| [r[0], r[1], r[2], r[3]])
-            .collect(),
-        angular_momenta: rotations.map(|r| [r[4], r[5], r[6]]).collect(),
+        positions: (0..n).map(|i| row(0, i)).collect(),
+        velocities: (0..n).map(|i| row(3 * n, i)).collect(),
+        orientations: rotations.map(|r| [r[0], r[1], r[2], r[3]]).into(),
+        angular_momenta: rotations.map(|r| [r[4], r[5], r[6]]).into(),
     });
     let rope = ConstraintSpec {
         rope: Some([3, 17]),
@@ -91,17 +76,10 @@ fn an_edit_leaves_all_else_as_it_was() {
         ..ConstraintSpec::default()
     };
     // Each with the particles, bodies and links that come or go.
+    let (position, mass) = ([0.0, 4.0, 0.0], 0.7);
     let edits = [
         (Edit::AddBody(ball([0.0, 5.0, 0.0])), 2, 1, 0),
-        (
-            Edit::AddParticle {
-                position: [0.0, 4.0, 0.0],
-                mass: 0.7,
-            },
-            1,
-            0,
-            0,
-        ),
+        (Edit::AddParticle { position, mass }, 1, 0, 0),
         (Edit::AddSpring((3, 17, 1.0, 1.0, 0.0)), 0, 0, 1),
         (Edit::AddConstraint(rope), 0, 0, 1),
         (Edit::Disjoin([12, 11]), 0, 0, -1),
@@ -138,43 +116,29 @@ fn an_edit_leaves_all_else_as_it_was() {
             let lost = links(&scene, Some).len() as i32 - before.len() as i32;
             let more = now.len() as i32 - before.len() as i32 - lost;
             assert_eq!(more, *joined, "{edit:?}");
-            let [few, many] = if *joined > 0 {
-                [&before, &now]
-            } else {
-                [&now, &before]
-            };
+            let both = [&before, &now];
+            let [few, many] = [*joined <= 0, *joined > 0].map(|k| both[usize::from(k)]);
             assert!(few.iter().all(|ends| many.contains(ends)), "{edit:?}");
             if *particles < 0 {
                 assert_eq!(before, now, "{edit:?}");
             }
         }
     }
-    let body = Edit::AddBody(ball([0.0, 5.0, 0.0]))
-        .apply(&given, network(&scene))
-        .unwrap();
-    let added = built(&body.description);
-    assert_eq!(particle(&added, n).0, [0.0, 5.0, 0.0, 1.0, 2.0, 3.0]);
-    assert_eq!(body.description.trail, Some(21));
-    let fewer = Edit::RemoveParticle(13)
-        .apply(&own, network(&scene))
-        .unwrap();
-    assert_eq!(fewer.description.trail, Some(20));
+    let apply = |edit: &Edit, own| edit.apply(own, network(&scene)).unwrap().description;
+    let body = apply(&edits[0].0, &given);
+    assert_eq!(particle(&built(&body), n).0, [0.0, 5.0, 0.0, 1.0, 2.0, 3.0]);
+    let fewer = apply(&Edit::RemoveParticle(13), &own);
+    assert_eq!([body.trail, fewer.trail], [Some(21), Some(20)]);
 }
 
 /// A body that comes into a liquid, or goes, leaves the particles of the liquid and of the other
 /// body as they are, and the scene is that of a file with the body in it.
 #[test]
 fn a_body_comes_into_a_liquid() {
-    for size in ["2", "3"] {
-        let [depth, z] = if size == "2" {
-            ["1", "0"]
-        } else {
-            ["0.4", "0.4"]
-        };
+    for [size, depth, z] in [["2", "1", "0"], ["3", "0.4", "0.4"]] {
         let cube = |x: f64| {
-            format!(
-                "[[body]]\nparts = [{{ box = [0.4, 0.4, {depth}] }}]\nmass = 90\nat = [{x}, 2, 0]\n"
-            )
+            let part = format!("{{ box = [0.4, 0.4, {depth}] }}");
+            format!("[[body]]\nparts = [{part}]\nmass = 90\nat = [{x}, 2, 0]\n")
         };
         let text = |bodies: &str| {
             let text = format!(
@@ -182,7 +146,7 @@ fn a_body_comes_into_a_liquid() {
                  spacing = 0.1\nat = [0, 0.2, 0]\ndensity = 1000\nsound = 30\nviscosity = 0.05\n\
                  velocity = [0.1, 0, 0]\ntank = {{ size = [2, 1, {z}], at = [0, 0.5, 0] }}\n"
             );
-            Description::parse(&text).unwrap()
+            read(&text)
         };
         for before in [String::new(), cube(-0.5)] {
             let own = text(&before);
@@ -207,7 +171,7 @@ fn a_body_comes_into_a_liquid() {
 
 #[test]
 fn an_edit_that_makes_no_sense_is_refused() {
-    let own = Description::parse(MANY).unwrap();
+    let own = read(MANY);
     let scene = built(&own);
     for (edit, why) in [
         (Edit::AddSpring((3, 3, 1.0, 1.0, 0.0)), "Two particles"),
@@ -269,7 +233,7 @@ fn joined_masses(description: &Description) -> Vec<(String, [f64; 2])> {
 /// Joints, motors, limits and attachments stay with their bodies, and go with them.
 #[test]
 fn what_is_joined_to_a_body_goes_with_it() {
-    let own = Description::parse(JOINED).unwrap();
+    let own = read(JOINED);
     let scene = built(&own);
     let whole = joined_masses(&own);
     assert_eq!(whole.len(), 4 + 2 + 6 + 3);

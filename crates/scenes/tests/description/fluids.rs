@@ -8,18 +8,10 @@ use super::*;
 /// around the sides and the bottom of its tank.
 #[test]
 fn fluids_stand_in_tanks() {
-    let setup = set_up(
-        "[[fluid]]
-        size = [0.4, 0.2, 0.2]
-        spacing = 0.1
-        at = [0.2, 0.1, 0.1]
-        density = 500
-        sound = 10
-        velocity = [1, 0, 0]
-        strain = [0, 2, 0]
-        tank = { size = [0.5, 0.3, 0.2], at = [0.25, 0.15, 0.1] }",
-    )
-    .unwrap();
+    let text = "[[fluid]]\nsize = [0.4, 0.2, 0.2]\nspacing = 0.1\nat = [0.2, 0.1, 0.1]\n\
+        density = 500\nsound = 10\nvelocity = [1, 0, 0]\nstrain = [0, 2, 0]\n\
+        tank = { size = [0.5, 0.3, 0.2], at = [0.25, 0.15, 0.1] }";
+    let setup = set_up(text).unwrap();
     let scene = setup.scene;
     let network = scene.model.network().unwrap();
     let walls = 11 * 6 * 8 - 5 * 3 * 2;
@@ -43,7 +35,34 @@ fn fluids_stand_in_tanks() {
     assert!(inside < 500.0 && inside > 400.0, "{inside}");
 }
 
-/// Faults of a fluid in a tank: a line, its replacement, and the beginning of the message.
+/// Changes of a fluid in a tank, with the messages.
+const WRONG_FLUID: &str = r#"
+density = 1000
+    density = 0 => line 6: fluid.density: it must be a finite number above 0
+sound = 45
+    sound = -45 => line 7: fluid.sound: it must be a finite number above 0
+     => line 1: fluid: the key `sound` is missing
+    sound = 45\nviscosity = -1 => line 8: fluid.viscosity: it must be a finite number of at least 0
+    sound = 45\nshape = "cone" => line 8: fluid.shape:
+spacing = 0.125
+    spacing = 0.13 =>
+        line 3: fluid.size: each edge must be a whole multiple of the spacing 0.13, not 1
+    spacing = 1e-5 => line 1: fluid: the scene would have 20002700018 particles
+[4, 2.5, 0]
+    [4, 2.51, 0] => line 8: fluid.tank.size: each edge must be a whole multiple
+[1, 2, 0]
+    [1, 2, 1] => line 3: fluid.size: in two dimensions, its last number is 0, not 1
+dimensions = 2
+    dimensions = 4 => line 2: fluid.dimensions: it must be 2 or 3, not 4
+at = [0.5, 1, 0]
+    at = [0.4, 1, 0] =>
+        line 5: fluid.at: the fluid would reach from x = -0.09999999999999998 to 0.9, outside the tank's walls at 0 and 4
+    at = [0.5, 0.9, 0] => line 5: fluid.at: the fluid would reach from y = -0.09999999999999998
+tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }
+    [[body]]\nparts = [{ box = [0.5, 0.5, 1] }]\ndensity = 500\nat = [0.5, 1, 0] =>
+        line 8: body: a point of it and a particle of the liquid would begin
+"#;
+
 #[test]
 fn what_is_wrong_with_a_fluid_is_said() {
     let fluid = "[[fluid]]
@@ -55,96 +74,14 @@ density = 1000
 sound = 45
 tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }
 ";
-    let other = "tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }\n".to_owned() + fluid;
-    let apart = other.replace("at = [0.5, 1, 0]", "at = [2.5, 1, 0]");
-    let same = fluid.replace("tank =", "# ");
-    assert!(build(&(fluid.to_owned() + &same.replace("[0.5, 1, 0]", "[2.5, 1, 0]"))).is_ok());
-    let other_law = apart.replace("sound = 45", "sound = 40");
-    for (there, instead, expected) in [
-        (
-            "density = 1000",
-            "density = 0",
-            "line 6: fluid.density: it must be a finite number above 0",
-        ),
-        (
-            "sound = 45",
-            "sound = -45",
-            "line 7: fluid.sound: it must be a finite number above 0",
-        ),
-        (
-            "sound = 45",
-            "",
-            "line 1: fluid: the key `sound` is missing",
-        ),
-        (
-            "sound = 45",
-            "sound = 45\nviscosity = -1",
-            "line 8: fluid.viscosity: it must be a finite number of at least 0",
-        ),
-        (
-            "sound = 45",
-            "sound = 45\nshape = \"cone\"",
-            "line 8: fluid.shape: ",
-        ),
-        (
-            "spacing = 0.125",
-            "spacing = 0.13",
-            "line 3: fluid.size: each edge must be a whole multiple of the spacing 0.13, not 1",
-        ),
-        (
-            "spacing = 0.125",
-            "spacing = 1e-5",
-            "line 1: fluid: the scene would have 20002700018 particles",
-        ),
-        (
-            "[4, 2.5, 0]",
-            "[4, 2.51, 0]",
-            "line 8: fluid.tank.size: each edge must be a whole multiple",
-        ),
-        (
-            "[1, 2, 0]",
-            "[1, 2, 1]",
-            "line 3: fluid.size: in two dimensions, its last number is 0, not 1",
-        ),
-        (
-            "dimensions = 2",
-            "dimensions = 4",
-            "line 2: fluid.dimensions: it must be 2 or 3, not 4",
-        ),
-        (
-            "at = [0.5, 1, 0]",
-            "at = [0.4, 1, 0]",
-            "line 5: fluid.at: the fluid would reach from x = -0.09999999999999998 to 0.9, outside the tank's walls at 0 and 4",
-        ),
-        (
-            "at = [0.5, 1, 0]",
-            "at = [0.5, 0.9, 0]",
-            "line 5: fluid.at: the fluid would reach from y = -0.09999999999999998",
-        ),
-        (
-            "tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }",
-            &same.replace("[0.5, 1", "[0.55, 1"),
-            "line 1: fluid: particles 0 and 128 would begin 0.05",
-        ),
-        (
-            "tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }",
-            "[[body]]\nparts = [{ box = [0.5, 0.5, 1] }]\ndensity = 500\nat = [0.5, 1, 0]",
-            "line 8: body: a point of it and a particle of the liquid would begin",
-        ),
-        (
-            "tank = { size = [4, 2.5, 0], at = [2, 1.25, 0] }\n",
-            &other_law,
-            "line 9: fluid.1: all fluids of a scene are one liquid",
-        ),
-    ] {
-        let text = fluid.replacen(there, instead, 1);
-        assert!(text != fluid, "{there}");
-        assert!(
-            said(&text).starts_with(expected),
-            "{}\n{expected}",
-            said(&text)
-        );
-    }
+    refused(fluid, WRONG_FLUID, said);
+    let (alone, _) = fluid.split_once("tank").unwrap();
+    let moved = |x: &str| alone.replace("at = [0.5", &format!("at = [{x}"));
+    assert!(build(&(fluid.to_owned() + &moved("2.5"))).is_ok());
+    let near = alone.to_owned() + &moved("0.55");
+    assert!(said(&near).starts_with("line 1: fluid: particles 0 and 128 would begin 0.05"));
+    let other = fluid.to_owned() + &moved("2.5").replace("sound = 45", "sound = 40");
+    assert!(said(&other).starts_with("line 9: fluid.1: all fluids of a scene are one liquid"));
 }
 
 /// A tank into which liquid flows through its left wall, and then no more.
@@ -184,60 +121,29 @@ fn liquid_flows_in_through_a_hole_in_the_wall() {
     assert_eq!(times.len(), 16);
 }
 
+/// Changes of that inflow, with the messages.
+const WRONG_INFLOW: &str = r"
+velocity = [2, 0, 0]
+    velocity = [0, 0, 0] =>
+        line 9: fluid.inflow.velocity: it must be along one of the axes x, y, not
+    velocity = [0, 0, 1] =>
+        line 9: fluid.inflow.velocity: it must be along one of the axes x, y, not
+    velocity = [2, 1, 0] => line 9: fluid.inflow.velocity: it must be along
+    velocity = [0, -2, 0] =>
+        line 9: fluid.inflow.size: along the velocity, the opening has the length 0, not 0.5
+size = [0, 0.5, 0]
+    size = [0, 0.45, 0] =>
+        line 9: fluid.inflow.size: each edge must be a whole multiple of the spacing
+    size = [0, 0, 0] => line 9: fluid.inflow.size: each edge must be a finite number above 0
+duration = 1
+    duration = -1 => line 9: fluid.inflow.duration: it must be a finite number above 0
+    duration = 1e9 => line 1: fluid: the scene would have 64000000246 particles, which take
+    duration = 1, ahead = -1 => line 9: fluid.inflow.ahead: it must be a finite number of at least 0
+";
+
 #[test]
 fn what_is_wrong_with_an_inflow_is_said() {
-    for (there, instead, expected) in [
-        (
-            "velocity = [2, 0, 0]",
-            "velocity = [0, 0, 0]",
-            "line 9: fluid.inflow.velocity: it must be along one of the axes x, y, not",
-        ),
-        (
-            "velocity = [2, 0, 0]",
-            "velocity = [0, 0, 1]",
-            "line 9: fluid.inflow.velocity: it must be along one of the axes x, y, not",
-        ),
-        (
-            "velocity = [2, 0, 0]",
-            "velocity = [2, 1, 0]",
-            "line 9: fluid.inflow.velocity: it must be along",
-        ),
-        (
-            "velocity = [2, 0, 0]",
-            "velocity = [0, -2, 0]",
-            "line 9: fluid.inflow.size: along the velocity, the opening has the length 0, not 0.5",
-        ),
-        (
-            "size = [0, 0.5, 0]",
-            "size = [0, 0.45, 0]",
-            "line 9: fluid.inflow.size: each edge must be a whole multiple of the spacing",
-        ),
-        (
-            "size = [0, 0.5, 0]",
-            "size = [0, 0, 0]",
-            "line 9: fluid.inflow.size: each edge must be a finite number above 0",
-        ),
-        (
-            "duration = 1",
-            "duration = -1",
-            "line 9: fluid.inflow.duration: it must be a finite number above 0",
-        ),
-        (
-            "duration = 1",
-            "duration = 1e9",
-            "line 1: fluid: the scene would have 64000000246 particles, which take",
-        ),
-        (
-            "duration = 1",
-            "duration = 1, ahead = -1",
-            "line 9: fluid.inflow.ahead: it must be a finite number of at least 0",
-        ),
-    ] {
-        let text = FILLED.replacen(there, instead, 1);
-        assert!(text != FILLED, "{there}");
-        let said = said(&text);
-        assert!(said.starts_with(expected), "{said}\n{expected}");
-    }
+    refused(FILLED, WRONG_INFLOW, said);
     let without = FILLED.replacen("inflow", "# ", 1);
     assert!(said(&without).starts_with("line 3: fluid.size: each edge must be"));
 }
@@ -253,44 +159,24 @@ fn outflows_open_walls() {
     let fluid = |text: &str| set_up(text).unwrap().scene.model;
     let (open, closed) = (fluid(&text), fluid(&text.replacen("outflow", "# ", 1)));
     assert_eq!(open.particles() + 2 * 3, closed.particles());
-    assert!(
-        open.network()
-            .unwrap()
-            .fluid()
-            .unwrap()
-            .members()
-            .drained()
-            .is_empty()
-    );
+    let liquid = open.network().unwrap().fluid().unwrap();
+    assert!(liquid.members().drained().is_empty());
     let within = text.replacen("at = [2, -0.1875, 0]", "at = [0, 0.1, 0]", 1);
     let within = fluid(&within);
     let network = within.network().unwrap();
     let drained = network.fluid().unwrap().members().drained();
     assert!(drained.len() == 2 && drained.iter().all(|i| network.is_pinned(*i as usize)));
-    for (there, instead, expected) in [
-        (
-            "size = [0.25, 0.375, 0]",
-            "size = [0.25, 0, 0]",
-            "outflow[0].size: each edge must be a finite number above 0",
-        ),
-        (
-            "size = [0.25, 0.375, 0]",
-            "size = [0.25, 0.375, 1]",
-            "outflow[0].size: in two dimensions, its last number is 0, not 1",
-        ),
-        (
-            "outflow = [",
-            &format!(
-                "outflow = [{}",
-                "{ size = [1, 1, 0], at = [9, 9, 0] },".repeat(100)
-            ),
-            "fluid: there are 101 outflows, more than 100",
-        ),
-        ("at = [2, -0.1875, 0]", "to = 3", "outflow"),
-    ] {
-        let said = said(&text.replacen(there, instead, 1));
-        assert!(said.contains(expected), "{said}");
-    }
+    let wrong = r"
+size = [0.25, 0.375, 0]
+    size = [0.25, 0, 0] => ... outflow[0].size: each edge must be a finite number above 0
+    size = [0.25, 0.375, 1] =>
+        ... outflow[0].size: in two dimensions, its last number is 0, not 1
+at = [2, -0.1875, 0]
+    to = 3 => ... outflow";
+    refused(&text, wrong, said);
+    let more = "{ size = [1, 1, 0], at = [9, 9, 0] },".repeat(100);
+    let many = text.replacen("outflow = [", &format!("outflow = [{more}"), 1);
+    assert!(said(&many).contains("fluid: there are 101 outflows, more than 100"));
 }
 
 /// What has flowed in before the start has flown straight on, at its distance from all else, and a
@@ -314,9 +200,7 @@ fn a_flow_may_have_begun_before() {
         let farthest = farthest.filter(|(_, w)| **w > 0.0).map(|(x, _)| *x);
         let farthest = farthest.fold(f64::NEG_INFINITY, f64::max);
         assert!((farthest - (0.8 - 0.0625)).abs() < 1e-9, "{farthest}");
-        let method = a3_core::integrators::find("verlet").unwrap();
-        let step = a3_core::Control::Step(0.001);
-        let mut run = a3_core::Simulation::new(scene, method, step).unwrap();
+        let mut run = run(scene, "verlet", 0.001);
         run.set_swinging(true);
         run.advance_to(0.7).unwrap();
         let network = run.model().network().unwrap();
@@ -332,45 +216,24 @@ fn cups_that_leak_are_named() {
     let notes = |parts: &str, dimensions: u8| {
         let size = [0.36, 0.36, if dimensions == 2 { 0.0 } else { 0.36 }];
         let setup = set_up(&format!(
-            "[[body]]
-            parts = [{parts}]
-            density = 2000
-            at = [0, -1, 0]
-            [[fluid]]
-            dimensions = {dimensions}
-            size = {size:?}
-            spacing = 0.04
-            at = [0, 0.5, 0]
-            density = 1000
-            sound = 30"
+            "[[body]]\nparts = [{parts}]\ndensity = 2000\nat = [0, -1, 0]\n\
+             [[fluid]]\ndimensions = {dimensions}\nsize = {size:?}\nspacing = 0.04\n\
+             at = [0, 0.5, 0]\ndensity = 1000\nsound = 30"
         ));
         setup.unwrap().presentation.notes.clone()
     };
     let cup = |thickness: f64| {
-        let wall = |side: f64| {
-            format!(
-                "{{ box = [{thickness}, 0.6, 1], at = [{}, 0.3, 0] }}",
-                0.4 * side
-            )
-        };
-        format!(
-            "{{ box = [0.9, {thickness}, 1] }}, {}, {}",
-            wall(-1.0),
-            wall(1.0)
-        )
+        let wall = |x: f64| format!("{{ box = [{thickness}, 0.6, 1], at = [{x}, 0.3, 0] }}");
+        let walls = [wall(-0.4), wall(0.4)].join(", ");
+        format!("{{ box = [0.9, {thickness}, 1] }}, {walls}")
     };
     for dimensions in [2, 3] {
         for thickness in [0.01, 0.02, 0.04, 0.06] {
-            let told = notes(&cup(thickness), dimensions);
+            let told = &notes(&cup(thickness), dimensions)[0];
             let whole = "body: the liquid can pass through walls that are only ";
-            assert!(
-                told[0].starts_with(&format!("{whole}{thickness:.2} m thick")),
-                "{told:?}"
-            );
-            assert!(
-                told[0].contains("at least 0.08 m thick, 2 spacings"),
-                "{told:?}"
-            );
+            let whole = format!("{whole}{thickness:.2} m thick");
+            assert!(told.starts_with(&whole), "{told}");
+            assert!(told.contains("at least 0.08 m thick, 2 spacings"), "{told}");
         }
         for holds in [
             cup(0.08),
@@ -383,10 +246,8 @@ fn cups_that_leak_are_named() {
             assert_eq!(notes(&holds, dimensions), Vec::<String>::new(), "{holds}");
         }
         // A film between the layers of the lattice, which no liquid feels.
-        let told = notes("{ box = [0.6, 0.005, 1] }", 2);
-        assert!(
-            told[0].starts_with("body: it is too thin for the liquid to feel it"),
-            "{told:?}"
-        );
+        let told = &notes("{ box = [0.6, 0.005, 1] }", 2)[0];
+        let thin = "body: it is too thin for the liquid to feel it";
+        assert!(told.starts_with(thin), "{told}");
     }
 }

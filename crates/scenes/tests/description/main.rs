@@ -1,5 +1,8 @@
 //! Scenes as text: reading and writing them, building them, and their faults.
 
+#[path = "../common/mod.rs"]
+mod common;
+
 mod building;
 mod edits;
 mod faults;
@@ -11,8 +14,10 @@ mod materials;
 mod solids;
 mod words;
 
-use a3_core::{Grid, Scene};
-use a3_scenes::{Fault, Mesh, Setup, find, parse_toml};
+use a3_core::{Grid, Network, Scene};
+use a3_scenes::{Description, Fault, Mesh, Places, Setup, find, parse_toml};
+
+use common::{begins, random, refused, run, seed};
 
 /// Builds a built-in scene, with this grid or its own.
 fn scene(name: &str, grid: Option<[usize; 2]>) -> Setup {
@@ -39,14 +44,32 @@ fn mesh(name: &str) -> Result<Mesh, String> {
     }
 }
 
-fn set_up(text: &str) -> Result<Setup, Fault> {
-    let (description, places) = parse_toml(text)?;
+/// Builds what was read from a text, or says where it is wrong.
+fn made((description, places): (Description, Places)) -> Result<Setup, Fault> {
     let built = description.build(None, &mut mesh);
     built.map_err(|fault| places.locate(fault))
 }
 
+fn set_up(text: &str) -> Result<Setup, Fault> {
+    parse_toml(text).and_then(made)
+}
+
 fn build(text: &str) -> Result<Scene, Fault> {
     set_up(text).map(|setup| setup.scene)
+}
+
+fn read(text: &str) -> Description {
+    Description::parse(text).unwrap_or_else(|fault| panic!("{fault}\n{text}"))
+}
+
+/// Builds a scene that needs no files.
+fn built(description: &Description) -> Scene {
+    let built = description.build(None, &mut |name| Err(format!("{name}: there is no file")));
+    built.unwrap_or_else(|fault| panic!("{fault}")).scene
+}
+
+fn network(scene: &Scene) -> &Network {
+    scene.model.network().unwrap()
 }
 
 /// Returns the message about a wrong text.

@@ -2,16 +2,13 @@
 
 use std::f64::consts::PI;
 
-use a3_scenes::{Description, Mesh};
-
-use super::{build, scene};
+use super::*;
 
 /// Lengths of the units (m) in which the same body is described.
 const UNITS: [f64; 3] = [1e-3, 1.0, 1e3];
 
 fn masses(text: &str) -> Vec<f64> {
-    let scene = build(text).unwrap_or_else(|fault| panic!("{fault}\n{text}"));
-    scene.model.network().unwrap().masses().to_vec()
+    network(&build(text).unwrap()).masses().to_vec()
 }
 
 /// Asserts the mass of all particles of a scene together (kg).
@@ -50,7 +47,7 @@ fn another_grid_weighs_as_much() {
     for name in ["cloth", "flag"] {
         let weight = |grid| {
             let setup = scene(name, grid);
-            let masses = setup.scene.model.network().unwrap().masses();
+            let masses = network(&setup.scene).masses();
             (masses.iter().sum::<f64>(), masses[0], setup.defaults)
         };
         let (own, mass, _) = weight(None);
@@ -73,13 +70,13 @@ fn a_jelly_and_a_solid_weigh_their_density_times_their_volume() {
         let size = [1.2, 0.2, 0.3].map(|edge| edge * unit);
         let weight = 1100.0 * size.iter().product::<f64>();
         for grid in [[2, 2, 2], [3, 2, 4], [9, 5, 6]] {
-            let body =
-                format!("grid = {grid:?}\nsize = {size:?}\ndensity = 1100\nat = [1, 2, 3]\n");
-            assert_weight(&format!("[[jelly]]\n{body}stiffness = [9, 9, 9]\n"), weight);
-            assert_weight(
-                &format!("[[solid]]\n{body}young = 1e5\npoisson = 0.3\n"),
-                weight,
-            );
+            for matter in [
+                "[[jelly]]\nstiffness = [9, 9, 9]",
+                "[[solid]]\nyoung = 1e5\npoisson = 0.3",
+            ] {
+                let place = format!("grid = {grid:?}\nsize = {size:?}\nat = [1, 2, 3]");
+                assert_weight(&format!("{matter}\n{place}\ndensity = 1100\n"), weight);
+            }
         }
     }
 }
@@ -95,9 +92,10 @@ fn a_mesh_weighs_its_density_times_its_area() {
             )
         };
         assert_weight(&text("square.obj"), 0.3 * unit * unit);
-        let description = Description::parse(&text("ball.obj")).unwrap();
-        let setup = description.build(None, &mut |_| Ok(ball())).unwrap();
-        let weight: f64 = setup.scene.model.network().unwrap().masses().iter().sum();
+        let setup = read(&text("ball.obj"))
+            .build(None, &mut |_| Ok(ball()))
+            .unwrap();
+        let weight: f64 = network(&setup.scene).masses().iter().sum();
         let sphere = 0.3 * 4.0 * PI * unit * unit;
         assert!(weight < sphere && weight > 0.99 * sphere, "{weight}");
     }
@@ -107,27 +105,18 @@ fn a_mesh_weighs_its_density_times_its_area() {
 fn ball() -> Mesh {
     let [rings, around] = [30_u32, 60];
     let mut mesh = Mesh::default();
-    for i in 0..=rings {
-        for j in 0..around {
-            let polar = PI * f64::from(i) / f64::from(rings);
-            let turn = 2.0 * PI * f64::from(j) / f64::from(around);
-            let radius = if i % rings == 0 { 0.0 } else { polar.sin() };
-            mesh.positions
-                .push([radius * turn.cos(), polar.cos(), radius * turn.sin()]);
-        }
-    }
-    for i in 0..rings {
-        for j in 0..around {
-            let at = |i: u32, j: u32| i * around + j % around;
-            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
-            // At a pole, the ring is one point.
-            if i > 0 {
-                mesh.triangles.push([a, b, c]);
-            }
-            if i + 1 < rings {
-                mesh.triangles.push([a, c, d]);
-            }
-        }
+    for (i, j) in (0..=rings).flat_map(|i| (0..around).map(move |j| (i, j))) {
+        let polar = PI * f64::from(i) / f64::from(rings);
+        let turn = 2.0 * PI * f64::from(j) / f64::from(around);
+        let radius = if i % rings == 0 { 0.0 } else { polar.sin() };
+        let place = [radius * turn.cos(), polar.cos(), radius * turn.sin()];
+        mesh.positions.push(place);
+        let at = |i: u32, j: u32| i * around + j % around;
+        let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+        // At a pole, the ring is one point.
+        let upper = (i > 0 && i < rings).then_some([a, b, c]);
+        let lower = (i + 1 < rings).then_some([a, c, d]);
+        mesh.triangles.extend([upper, lower].into_iter().flatten());
     }
     mesh
 }
@@ -140,26 +129,24 @@ fn a_rigid_body_weighs_its_density_times_its_volume() {
         let cube = unit.powi(3);
         let [a, b, c] = [0.5, 0.2, 0.3].map(|edge| edge * unit);
         let (r, l) = (0.2 * unit, 0.7 * unit);
-        let cuboid = (format!("{{ box = [{a}, {b}, {c}] }}"), 0.03 * cube);
-        let ball = (
+        let (cuboid, round) = (0.03 * cube, 4.0 / 3.0 * PI * 0.008 * cube);
+        let [cuboid_part, ball_part] = [
+            format!("{{ box = [{a}, {b}, {c}] }}"),
             format!("{{ ball = {r}, at = [{l}, 0, 0] }}"),
-            4.0 / 3.0 * PI * 0.008 * cube,
-        );
-        let capsule = (
-            format!("{{ capsule = [{l}, {r}], rotation = [1, 0, 2] }}"),
-            PI * (0.7 * 0.04 + 4.0 / 3.0 * 0.008) * cube,
-        );
-        let both = (format!("{}, {}", cuboid.0, ball.0), cuboid.1 + ball.1);
-        for (parts, volume) in [cuboid, ball, capsule, both] {
+        ];
+        let capsule = format!("{{ capsule = [{l}, {r}], rotation = [1, 0, 2] }}");
+        for (parts, volume) in [
+            (format!("{cuboid_part}, {ball_part}"), cuboid + round),
+            (cuboid_part, cuboid),
+            (ball_part, round),
+            (capsule, PI * (0.7 * 0.04 + 4.0 / 3.0 * 0.008) * cube),
+        ] {
             let text = format!("[[body]]\nparts = [{parts}]\ndensity = 700\nat = [1, 2, 3]\n");
             assert_weight(&text, 700.0 * volume);
             // Drag over mass is the rate at which the body slows down.
             let scene = build(&format!("drag_per_mass = 0.4\n{text}")).unwrap();
-            let drag = scene.model.network().unwrap().drag().unwrap();
-            assert!(
-                (drag / (700.0 * volume) / 0.4 - 1.0).abs() < 1e-12,
-                "{drag}"
-            );
+            let rate = network(&scene).drag().unwrap() / (700.0 * volume);
+            assert!((rate / 0.4 - 1.0).abs() < 1e-12, "{rate}");
         }
     }
 }

@@ -1,15 +1,10 @@
 //! Materials by name: the keys that they give, those that win, and the names that are refused.
 
-use a3_core::Grid;
-use a3_scenes::{BucklingSpec, Description, MATERIALS, Stuff};
+use a3_scenes::{BucklingSpec, MATERIALS, Stuff};
 
-use super::{build, mesh, said};
+use super::*;
 
 const DENIM: &str = "[[cloth]]\nmaterial = \"denim\"\ngrid = [4, 5]\nwidth = 0.2\n";
-
-fn read(text: &str) -> Description {
-    Description::parse(text).unwrap()
-}
 
 #[test]
 fn a_fabric_gives_the_keys_of_a_cloth_that_are_not_there() {
@@ -28,10 +23,7 @@ fn a_fabric_gives_the_keys_of_a_cloth_that_are_not_there() {
     let own = "mass = 0.01\nstiffness = [1, 2, 3]\ndamping_ratio = 0.1\n\
         buckling = { bending = 1e-4, compression = 30 }\n";
     let named = read(&format!("{DENIM}{own}"));
-    let mut plain = read(&format!(
-        "{}{own}",
-        DENIM.replace("material = \"denim\"\n", "")
-    ));
+    let mut plain = read(&format!("{DENIM}{own}").replace("material = \"denim\"\n", ""));
     assert_eq!(plain.cloth[0].material.take(), None);
     plain.cloth[0].material = Some("denim".into());
     assert_eq!(named, plain);
@@ -59,18 +51,12 @@ fn a_solid_gives_the_keys_of_jellies_solids_and_bodies() {
     assert!((structural / (1.2e4 * 0.1 * 22.0 / 35.0) - 1.0).abs() < 1e-12);
     assert!((structural / shear - 22.0 / 6.0).abs() < 1e-12 && bend == 0.0);
     let solid = &scene.solid[0];
-    assert_eq!(
-        (solid.density, solid.young, solid.poisson),
-        (1100.0, 2.76e6, 0.48)
-    );
-    assert_eq!(solid.damping, 1.59e-3);
+    let keys = [solid.density, solid.young, solid.poisson, solid.damping];
+    assert_eq!(keys, [1100.0, 2.76e6, 0.48, 1.59e-3]);
     assert_eq!(scene.body[0].density, Some(7800.0));
     build(&text).unwrap();
-    let heavy = read(&text.replace("\"steel\"\n", "\"steel\"\nmass = 2\n"));
-    assert_eq!(
-        (heavy.body[0].density, heavy.body[0].mass),
-        (None, Some(2.0))
-    );
+    let heavy = &read(&text.replace("\"steel\"\n", "\"steel\"\nmass = 2\n")).body[0];
+    assert_eq!((heavy.density, heavy.mass), (None, Some(2.0)));
 }
 
 #[test]
@@ -95,46 +81,32 @@ fn another_grid_has_strips_of_its_own_width() {
     let scene = read(DENIM);
     let of = |grid: Option<Grid>| {
         let scene = scene.build(grid, &mut mesh).unwrap().scene;
-        let network = scene.model.network().unwrap();
-        network.buckling().next().unwrap().bending
+        network(&scene).buckling().next().unwrap().bending
     };
     let finer = Grid::new(7, 9).unwrap();
     assert!((of(None) / of(Some(finer)) - 2.0).abs() < 1e-12);
 }
 
+/// Changes of the cloth of denim, with the messages.
+const WRONG: &str = r#"
+denim
+    denin =>
+        line 2: cloth.material: there is no `denin`; did you mean `denim`? The choices are silk,
+    steel => line 2: cloth.material: `steel` is a solid: the materials of a cloth are silk, jersey,
+"denim"
+    7 => line 2: cloth.material: it must be a text in quotes, not 7
+width = 0.2
+    width = "a" => line 4: cloth.width: it must be a number
+material = "denim"\n
+     => line 1: cloth: the key `stiffness` is missing
+"#;
+
 #[test]
 fn unknown_materials_are_refused_with_the_nearest_name() {
-    for (text, why) in [
-        (
-            DENIM.replace("denim", "denin"),
-            "line 2: cloth.material: there is no `denin`; did you mean `denim`? The choices are silk,",
-        ),
-        (
-            DENIM.replace("denim", "steel"),
-            "line 2: cloth.material: `steel` is a solid: the materials of a cloth are silk, jersey,",
-        ),
-        (
-            "[[body]]\nparts = [{ ball = 1 }]\nmaterial = \"silk\"\n".into(),
-            "line 3: body.material: `silk` is a fabric: the materials of a solid body are gelatine,",
-        ),
-        (
-            DENIM.replace("\"denim\"", "7"),
-            "line 2: cloth.material: it must be a text in quotes, not 7",
-        ),
-        (
-            "[[chain]]\nmaterial = \"steel\"\n".into(),
-            "line 2: chain.material: there is no key `material`",
-        ),
-        (
-            DENIM.replace("width = 0.2", "width = \"a\""),
-            "line 4: cloth.width: it must be a number",
-        ),
-        (
-            DENIM.replace("material = \"denim\"\n", ""),
-            "line 1: cloth: the key `stiffness` is missing",
-        ),
-    ] {
-        let said = said(&text);
-        assert!(said.starts_with(why), "{said}");
-    }
+    refused(DENIM, WRONG, said);
+    let why = "`silk` is a fabric: the materials of a solid body are gelatine,";
+    let body = said("[[body]]\nparts = [{ ball = 1 }]\nmaterial = 'silk'\n");
+    begins(body, &format!("line 3: body.material: {why}"));
+    let chain = said("[[chain]]\nmaterial = 'steel'\n");
+    begins(chain, "line 2: chain.material: there is no key `material`");
 }

@@ -2,7 +2,7 @@
 
 use a3_scenes::Mesh;
 
-use crate::{area, data, obj};
+use crate::{area, begins, counts, data, obj};
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
@@ -10,7 +10,7 @@ const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 #[test]
 fn a_square_is_a_square_however_it_is_written() {
     let square = obj(SQUARE);
-    assert_eq!((square.positions.len(), square.triangles.len()), (4, 2));
+    assert_eq!(counts(&square), [4, 2]);
     for text in [
         data("continued.obj"),
         data("comment.obj"),
@@ -18,10 +18,7 @@ fn a_square_is_a_square_however_it_is_written() {
         SQUARE.replace('\n', "\r\n").into(),
         format!("\u{feff}{SQUARE}").into(),
         SQUARE.replace("1 0\n", "1 0 # a corner \\\n").into(),
-        SQUARE
-            .replace("f 1 2", "f\\\n 1 \\  \n2\\")
-            .replace(" 3", "\r\n3")
-            .into(),
+        SQUARE.replace("f 1 2 3", "f\\\n 1 \\  \n2\\\r\n3").into(),
         SQUARE.replace("v 1 0 0", "v 1 \\\r0 0").into(),
         // A statement that is skipped is not continued.
         format!("mtllib C:\\things\\\n{SQUARE}usemtl red\\").into(),
@@ -39,10 +36,7 @@ fn marks_and_comments_are_in_all_texts() {
     let orphan = String::from_utf8(data("orphan.msh")).unwrap();
     let mesh = Mesh::from_gmsh(orphan.as_bytes()).unwrap();
     assert_eq!((mesh.positions.len(), mesh.tetrahedra.len()), (4, 1));
-    assert_eq!(
-        (&mesh.numbers[..], &mesh.tetrahedron_numbers[..]),
-        (&[2, 3, 4, 5][..], &[2][..])
-    );
+    assert!(mesh.numbers == [2, 3, 4, 5] && mesh.tetrahedron_numbers == [2]);
     for text in [
         format!("\u{feff}{orphan}"),
         orphan.replace('\n', "\r\n"),
@@ -53,7 +47,7 @@ fn marks_and_comments_are_in_all_texts() {
     }
     let [ele, node] = ["ten.ele", "ten.node"].map(|name| String::from_utf8(data(name)).unwrap());
     let mesh = Mesh::from_tetgen(node.as_bytes(), ele.as_bytes()).unwrap();
-    assert_eq!((mesh.positions.len(), mesh.triangles.len()), (4, 4));
+    assert_eq!(counts(&mesh), [4, 4]);
     assert_eq!(mesh.numbers, [1, 2, 3, 4]);
     let marked = [&node, &ele].map(|text| format!("\u{feff}{}", text.replace('\n', "\r")));
     let [node, ele] = marked.each_ref().map(std::string::String::as_bytes);
@@ -71,15 +65,9 @@ fn elements_of_gmsh_are_read_by_their_corners() {
     };
     let mesh = Mesh::from_gmsh(file(11).as_bytes()).unwrap();
     assert_eq!(mesh.tetrahedra, [[0, 1, 2, 3]]);
-    assert_eq!(
-        (&mesh.numbers[..], &mesh.tetrahedron_numbers[..]),
-        (&[1, 2, 3, 7][..], &[5][..])
-    );
+    assert!(mesh.numbers == [1, 2, 3, 7] && mesh.tetrahedron_numbers == [5]);
     let why = Mesh::from_gmsh(file(5).as_bytes()).unwrap_err();
-    assert!(
-        why.starts_with("line 13: an element of type 5 is a hexahedron"),
-        "{why}"
-    );
+    begins(why, "line 13: an element of type 5 is a hexahedron");
 }
 
 #[test]
@@ -110,13 +98,10 @@ fn utf_16_is_named() {
 fn loose_points_are_left_out() {
     let mesh = obj(data("loose.obj"));
     assert_eq!((mesh.positions.len(), area(&mesh)), (4, 1.0));
-    let far = obj(format!(
-        "v 1e30 0 0\n{}",
-        SQUARE.replace("1 2 3 4", "2 3 4 5")
-    ));
+    let far = obj(format!("v 1e30 0 0\n{SQUARE}").replace("1 2 3 4", "2 3 4 5"));
     assert_eq!(far.numbers, [2, 3, 4, 5]);
     let why = Mesh::from_obj(SQUARE.replace("v 1 1 0", "v 1 2e9 0").as_bytes()).unwrap_err();
-    assert!(why.starts_with("point 3 is at (1e0, 2e9, 0e0)"), "{why}");
+    begins(why, "point 3 is at (1e0, 2e9, 0e0)");
 }
 
 /// Points where parts of a file meet are merged, though rounding separates them. A part that is
@@ -125,23 +110,16 @@ fn loose_points_are_left_out() {
 fn seams_are_welded() {
     let halves = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1.0000002 0 0\nv 2 0 0\nv 2 1 0\nv 0.9999998 1 0\nf 1 2 3 4\nf 5 6 7 8\n";
     for unit in [1e-6, 1.0, 1e6] {
-        let scaled: String = halves
-            .lines()
-            .map(|line| match line.strip_prefix("v ") {
-                Some(point) => {
-                    let numbers = point.split(' ').map(|x| x.parse::<f64>().unwrap() * unit);
-                    let numbers: Vec<_> = numbers.map(|x| format!("{x:e}")).collect();
-                    format!("v {}\n", numbers.join(" "))
-                }
-                None => format!("{line}\n"),
-            })
-            .collect();
-        let mesh = obj(scaled).welded();
-        assert_eq!(
-            (mesh.positions.len(), mesh.triangles.len()),
-            (6, 4),
-            "{unit}"
-        );
+        let scaled = |x: &str| format!("{:e}", x.parse::<f64>().unwrap() * unit);
+        let lines = halves.lines().map(|line| match line.strip_prefix("v ") {
+            Some(point) => {
+                let numbers: Vec<_> = point.split(' ').map(scaled).collect();
+                format!("v {}\n", numbers.join(" "))
+            }
+            None => format!("{line}\n"),
+        });
+        let mesh = obj(lines.collect::<String>()).welded();
+        assert_eq!(counts(&mesh), [6, 4], "{unit}");
         assert_eq!(mesh.numbers, [1, 2, 3, 4, 6, 7]);
     }
     let apart = halves.replace("0002", "0200").replace("9999998", "9999800");

@@ -1,11 +1,14 @@
 //! Hostile files: each is accepted or refused, without a panic and within the memory budget.
 
+#[path = "../common/mod.rs"]
+mod common;
 mod memory;
 mod mutation;
 
 use a3_core::Element;
-use a3_scenes::{Description, Mesh, Places, SCENES, Setup, parse_json, parse_toml};
+use a3_scenes::{Description, Fault, Mesh, Places, SCENES, Setup, parse_json, parse_toml};
 
+use common::seed;
 use memory::taken;
 use mutation::{Random, seeds};
 
@@ -15,21 +18,29 @@ const INPUTS: usize = 10_000;
 /// Largest memory at once, and in total (bytes).
 const MOST: [usize; 2] = [256 << 20, 1 << 30];
 
-/// Gives mutated seeds to a reader, and asserts that it needs little memory. Returns the number of
-/// inputs that it accepts.
-fn feed(seeds: &[Vec<u8>], mut takes: impl FnMut(&[u8]) -> bool) -> usize {
+/// Gives mutated seeds to a reader, and asserts that it needs little memory and takes some.
+fn feed(seeds: &[Vec<u8>], mut takes: impl FnMut(&[u8]) -> bool) {
     let mut random = Random(1);
     let mut count = 0;
     for k in 0..INPUTS {
         let input = random.mutated(seeds);
         let memory = taken(|| count += usize::from(takes(&input)));
         let shown = String::from_utf8_lossy(&input);
-        assert!(
-            memory < MOST && memory[1] < MOST[1],
-            "input {k} takes {memory:?} bytes:\n{shown}"
-        );
+        let is_little = memory < MOST && memory[1] < MOST[1];
+        assert!(is_little, "input {k} takes {memory:?} bytes:\n{shown}");
     }
-    count
+    assert!(count > INPUTS / 25, "{count}");
+}
+
+/// Gives mutated texts to a reader of scenes.
+fn feed_texts(texts: &[Vec<u8>], read: fn(&str) -> Result<(Description, Places), Fault>) {
+    feed(texts, |bytes| {
+        let Ok(text) = str::from_utf8(bytes) else {
+            return false;
+        };
+        let parsed = read(text).map_err(|fault| said(&fault.to_string()));
+        parsed.is_ok_and(|parsed| is_scene(&parsed, text))
+    });
 }
 
 /// Refuses any file.
@@ -67,15 +78,10 @@ fn is_scene((description, places): &(Description, Places), text: &str) -> bool {
         }
         let laws = network.springs().map(|s| s.law);
         numbers.extend(laws.flat_map(|law| [law.stiffness, law.rest_length, law.damping]));
-        let points = network
-            .obstacles()
-            .iter()
-            .map(|obstacle| obstacle.path.at(1.0).position);
+        let obstacles = network.obstacles().iter().map(|obstacle| obstacle.path);
+        let paths = obstacles.chain(network.pins().map(|(_, path)| path));
+        let points = paths.map(|path| path.at(1.0).position);
         numbers.extend(points.flat_map(|p| [p.x, p.y, p.z]));
-        numbers.extend(network.pins().flat_map(|(_, path)| {
-            let place = path.at(1.0).position;
-            [place.x, place.y, place.z]
-        }));
     }
     assert!(numbers.iter().all(|x| x.is_finite()), "{text}");
     true
@@ -88,79 +94,48 @@ fn said(why: &str) {
 
 #[test]
 fn scenes_are_taken_or_refused() {
-    let mut texts = seeds("scene");
     let small = SCENES.iter().filter(|entry| entry.text.len() < 2000);
+    let mut texts = seeds("scene");
     texts.extend(small.map(|entry| entry.text.into()));
-    let taken = feed(&texts, |bytes| {
-        let Ok(text) = str::from_utf8(bytes) else {
-            return false;
-        };
-        match parse_toml(text) {
-            Ok(parsed) => is_scene(&parsed, text),
-            Err(fault) => {
-                said(&fault.to_string());
-                false
-            }
-        }
-    });
-    assert!(taken > INPUTS / 25, "{taken}");
+    feed_texts(&texts, parse_toml);
 }
 
 #[test]
 fn lists_of_particles_are_taken_or_refused() {
-    let taken = feed(&seeds("list"), |bytes| {
-        let Ok(text) = str::from_utf8(bytes) else {
-            return false;
-        };
-        let parsed = parse_json(text).map_err(|fault| said(&fault.to_string()));
-        parsed.is_ok_and(|parsed| is_scene(&parsed, text))
-    });
-    assert!(taken > INPUTS / 25, "{taken}");
+    feed_texts(&seeds("list"), parse_json);
 }
 
 #[test]
-fn obj_files_are_taken_or_refused() {
-    let taken = feed(&seeds("obj"), |bytes| is_mesh(Mesh::from_obj(bytes)));
-    assert!(taken > INPUTS / 25, "{taken}");
-}
-
-#[test]
-fn stl_and_ply_files_are_taken_or_refused() {
-    let taken = feed(&seeds("stl"), |bytes| is_mesh(Mesh::from_stl(bytes)));
-    assert!(taken > INPUTS / 25, "{taken}");
-    let taken = feed(&seeds("ply"), |bytes| is_mesh(Mesh::from_ply(bytes)));
-    assert!(taken > INPUTS / 25, "{taken}");
+fn obj_stl_and_ply_files_are_taken_or_refused() {
+    feed(&seeds("obj"), |bytes| is_mesh(Mesh::from_obj(bytes)));
+    feed(&seeds("stl"), |bytes| is_mesh(Mesh::from_stl(bytes)));
+    feed(&seeds("ply"), |bytes| is_mesh(Mesh::from_ply(bytes)));
 }
 
 #[test]
 fn gltf_files_are_taken_or_refused() {
     let buffer = vec![0; 60];
-    let taken = feed(&seeds("gltf"), |bytes| {
-        is_mesh(Mesh::from_gltf(bytes, &mut |name| match name {
-            "square.bin" => Ok(buffer.clone()),
-            other => no_file(other),
-        }))
+    let mut file = |name: &str| match name {
+        "square.bin" => Ok(buffer.clone()),
+        other => no_file(other),
+    };
+    feed(&seeds("gltf"), |bytes| {
+        is_mesh(Mesh::from_gltf(bytes, &mut file))
     });
-    assert!(taken > INPUTS / 25, "{taken}");
 }
 
 #[test]
-fn files_of_gmsh_are_taken_or_refused() {
-    let taken = feed(&seeds("msh"), |bytes| is_mesh(Mesh::from_gmsh(bytes)));
-    assert!(taken > INPUTS / 25, "{taken}");
-}
-
-#[test]
-fn pairs_of_files_of_tetgen_are_taken_or_refused() {
+fn files_of_gmsh_and_tetgen_are_taken_or_refused() {
+    feed(&seeds("msh"), |bytes| is_mesh(Mesh::from_gmsh(bytes)));
     let [ele, node] = &seeds("ele")[..] else {
         panic!("other seeds")
     };
-    let of_ele = |bytes: &[u8]| is_mesh(Mesh::from_tetgen(node, bytes));
-    let taken = feed(std::slice::from_ref(ele), of_ele);
-    assert!(taken > INPUTS / 25, "{taken}");
-    let of_node = |bytes: &[u8]| is_mesh(Mesh::from_tetgen(bytes, ele));
-    let taken = feed(std::slice::from_ref(node), of_node);
-    assert!(taken > INPUTS / 25, "{taken}");
+    feed(std::slice::from_ref(ele), |bytes| {
+        is_mesh(Mesh::from_tetgen(node, bytes))
+    });
+    feed(std::slice::from_ref(node), |bytes| {
+        is_mesh(Mesh::from_tetgen(bytes, ele))
+    });
 }
 
 /// Whether there is a mesh. Asserts that it is complete.
@@ -168,16 +143,10 @@ fn is_mesh(mesh: Result<Mesh, String>) -> bool {
     let Ok(mesh) = mesh.map_err(|why| said(&why)) else {
         return false;
     };
-    let count = mesh.positions.len();
-    assert!(
-        mesh.triangles
-            .iter()
-            .flatten()
-            .all(|i| (*i as usize) < count)
-    );
+    let is_there = |i: &u32| (*i as usize) < mesh.positions.len();
+    assert!(mesh.triangles.iter().flatten().all(is_there));
+    assert!(mesh.tetrahedra.iter().flatten().all(is_there));
     assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
-    let corners = mesh.tetrahedra.iter().flatten();
-    assert!(corners.into_iter().all(|i| (*i as usize) < count));
     if !mesh.tetrahedra.is_empty() {
         // A solid with this mesh is refused, or has finite masses.
         let text =
@@ -194,74 +163,50 @@ fn is_mesh(mesh: Result<Mesh, String>) -> bool {
     true
 }
 
-/// Asserts that an input is refused for the expected reason and with little memory.
-fn refused(expected: &str, answer: impl FnOnce() -> Result<(), String>) {
-    let mut why = String::new();
-    let memory = taken(|| why = answer().unwrap_err());
-    assert!(
-        why.contains(expected) && why.len() < 5000,
-        "{expected}: {why}"
-    );
-    assert!(memory[0] < MOST[0], "{expected}: {memory:?}");
-}
-
-/// Inputs of a few hundred bytes that would need hours or gigabytes are refused.
+/// Inputs of a few hundred bytes that would need hours or gigabytes are refused, for the expected
+/// reason and with little memory.
 #[test]
 fn what_is_too_much_is_refused() {
-    let seed = |folder: &str, name: &str| {
-        let path = format!(
-            "{}/../../fuzz/seeds/{folder}/{name}",
-            env!("CARGO_MANIFEST_DIR")
-        );
-        std::fs::read(path).unwrap()
+    let refused = |expected: &str, answer: &mut dyn FnMut() -> Result<Mesh, String>| {
+        let mut why = String::new();
+        let memory = taken(|| why = answer().unwrap_err());
+        let is_brief = why.len() < 5000;
+        assert!(why.contains(expected) && is_brief, "{expected}: {why}");
+        assert!(memory[0] < MOST[0], "{expected}: {memory:?}");
     };
     let many = "4000000000";
+    let (nodes, blocks) = (
+        "$Nodes\nmany\n1 0 0 0\n",
+        "$Nodes\nmany many 1 1\n0 0 0 many\n",
+    );
+    let elements = "$Elements\nmany 1 1 1\n3 0 4 many\n1 2";
+    let gmsh = |version: &str, rest: &str| {
+        format!("$MeshFormat\n{version} 8\n{}", rest.replace("many", many))
+    };
     for (text, expected) in [
-        (
-            format!("$MeshFormat\n2.2 0 8\n$Nodes\n{many}\n1 0 0 0\n"),
-            "ends within $Nodes",
-        ),
-        (
-            format!("$MeshFormat\n4.1 0 8\n$Nodes\n{many} {many} 1 1\n0 0 0 {many}\n"),
-            "ends within",
-        ),
-        (
-            format!("$MeshFormat\n4.1 0 8\n$Elements\n{many} 1 1 1\n3 0 4 {many}\n1 2"),
-            "four corners",
-        ),
-        (
-            "$MeshFormat\n4.1 1 8\n".into(),
-            "it is Gmsh's format 4.1, binary",
-        ),
+        (gmsh("2.2 0", nodes), "ends within $Nodes"),
+        (gmsh("4.1 0", blocks), "ends within"),
+        (gmsh("4.1 0", elements), "four corners"),
+        (gmsh("4.1 1", ""), "it is Gmsh's format 4.1, binary"),
         (String::new(), "no Gmsh file"),
     ] {
-        refused(expected, || Mesh::from_gmsh(text.as_bytes()).map(|_| ()));
+        refused(expected, &mut || Mesh::from_gmsh(text.as_bytes()));
     }
-    for (text, expected) in [
-        (
-            format!(
-                "ply\nformat ascii 1.0\nelement face {many}\nproperty int a\nend_header\n1 2 3"
-            ),
-            "ends within it",
-        ),
-        (
-            format!("ply\nformat ascii 1.0\nelement none {many}\nend_header\n"),
-            "no triangles",
-        ),
-    ] {
-        refused(expected, || Mesh::from_ply(text.as_bytes()).map(|_| ()));
+    let face = "element face many\nproperty int a\nend_header\n1 2 3";
+    let none = "element none many\nend_header\n";
+    for (elements, expected) in [(face, "ends within it"), (none, "no triangles")] {
+        let text = format!("ply\nformat ascii 1.0\n{}", elements.replace("many", many));
+        refused(expected, &mut || Mesh::from_ply(text.as_bytes()));
     }
     let long = format!("{many} 3 0 0\n0 1 2 3\n");
-    refused("ends before all", || {
-        Mesh::from_tetgen(long.as_bytes(), b"0 4").map(|_| ())
+    refused("ends before all", &mut || {
+        Mesh::from_tetgen(long.as_bytes(), b"0 4")
     });
     for (name, expected) in [("g_dag", "two parents"), ("g_sparse", "more than")] {
-        let bytes = seed("gltf", &format!("{name}.gltf"));
-        refused(expected, || {
-            Mesh::from_gltf(&bytes, &mut no_file).map(|_| ())
-        });
+        let bytes = seed(&format!("gltf/{name}.gltf"));
+        refused(expected, &mut || Mesh::from_gltf(&bytes, &mut no_file));
     }
-    let text = |name: &str| String::from_utf8(seed("scene", name)).unwrap();
+    let text = |name: &str| String::from_utf8(seed(&format!("scene/{name}"))).unwrap();
     let pinned = |text: &str, count: usize| format!("{CHAIN}pin = [{}]", text.repeat(count));
     for (scene, expected) in [
         (text("pinbomb.toml"), "1440 MiB"),
@@ -274,12 +219,10 @@ fn what_is_too_much_is_refused() {
         ("a ".repeat(1_000_000), "it is too long"),
         (format!("{} = 1", "a".repeat(1_000_000)), "there is no key"),
     ] {
-        refused(expected, || {
+        refused(expected, &mut || {
             let (description, places) = parse_toml(&scene).map_err(|fault| fault.to_string())?;
-            let built = description.build(None, &mut mesh);
-            built
-                .map(|_| ())
-                .map_err(|fault| places.locate(fault).to_string())
+            let built = description.build(None, &mut mesh).map(|_| Mesh::default());
+            built.map_err(|fault| places.locate(fault).to_string())
         });
     }
 }
@@ -298,21 +241,8 @@ fn what_is_large_is_taken() {
     }
 }
 
-const CHAIN: &str = "
-[[chain]]
-particles = 2
-from = [0, 0, 0]
-to = [1, 0, 0]
-mass = 1
-stiffness = 1
-";
+const CHAIN: &str =
+    "\n[[chain]]\nparticles = 2\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nmass = 1\nstiffness = 1\n";
 
-const SOLID: &str = "
-[[solid]]
-grid = [40, 32, 28]
-size = [4, 3.5, 2.9]
-density = 1000
-young = 1e5
-poisson = 0.3
-at = [0, 0, 0]
-";
+const SOLID: &str = "[[solid]]\ngrid = [40, 32, 28]\nsize = [4, 3.5, 2.9]\ndensity = 1000\nyoung = 1e5\n\
+    poisson = 0.3\nat = [0, 0, 0]\n";

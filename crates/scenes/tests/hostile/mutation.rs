@@ -1,58 +1,25 @@
 //! Seeds and their mutations: repeatable changes of bytes, words and lines.
 
 use std::fs;
-use std::path::Path;
 
 /// Words that readers have stumbled over.
+#[rustfmt::skip]
 const WORDS: [&str; 31] = [
-    "1e308",
-    "-1e308",
-    "nan",
-    "inf",
-    "-1",
-    "0",
-    "-0.0",
-    "1e-320",
-    "4e9",
-    "4000000000",
-    "1e9",
-    "1e13",
-    "18446744073709551615",
-    "-9223372036854775808",
-    "2147483648",
-    "0x7fffffff",
-    "[]",
-    "{}",
-    "[[",
-    "]",
-    "\"",
-    "'''",
-    "#",
-    "true",
-    "null",
-    "a.a.a",
-    "\u{0}",
-    "\u{fffd}",
-    "1, 1",
-    "[0, 0, 0]",
-    "\n",
+    "1e308", "-1e308", "nan", "inf", "-1", "0", "-0.0", "1e-320", "4e9", "4000000000", "1e9", "1e13",
+    "18446744073709551615", "-9223372036854775808", "2147483648", "0x7fffffff", "[]", "{}", "[[", "]",
+    "\"", "'''", "#", "true", "null", "a.a.a", "\u{0}", "\u{fffd}", "1, 1", "[0, 0, 0]", "\n",
 ];
 
 /// Reads the files of a folder of seeds, in the order of their names.
 pub fn seeds(folder: &str) -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../fuzz/seeds")
-        .join(folder);
+    let folder = format!("{}/../../fuzz/seeds/{folder}", env!("CARGO_MANIFEST_DIR"));
     let files = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path());
     let mut files: Vec<_> = files.collect();
     files.sort();
     assert!(!files.is_empty());
-    files
-        .into_iter()
-        .map(|file| fs::read(file).unwrap())
-        .collect()
+    files.iter().map(|file| fs::read(file).unwrap()).collect()
 }
 
 /// Generator of pseudorandom numbers (`SplitMix64`).
@@ -80,16 +47,9 @@ impl Random {
         let at = self.below(bytes.len());
         match self.below(8) {
             // A bit, a byte, a piece, the rest.
-            0 => bytes
-                .iter_mut()
-                .skip(at)
-                .take(1)
-                .for_each(|b| *b ^= 1 << self.below(8)),
-            1 => bytes
-                .iter_mut()
-                .skip(at)
-                .take(1)
-                .for_each(|b| *b = self.below(256) as u8),
+            0 if at < bytes.len() => bytes[at] ^= 1 << self.below(8),
+            1 if at < bytes.len() => bytes[at] = self.below(256) as u8,
+            0 | 1 => {}
             2 => drop(bytes.drain(at..(at + self.below(20)).min(bytes.len()))),
             3 if self.below(4) == 0 => bytes.truncate(at),
             // Lines.
@@ -103,14 +63,10 @@ impl Random {
                 }
             }
             // Words.
-            5 => {
-                let word = WORDS[self.below(WORDS.len())].bytes();
-                bytes.splice(at..at, word);
-            }
+            5 => drop(bytes.splice(at..at, WORDS[self.below(WORDS.len())].bytes())),
             _ => {
-                let word = piece(bytes, at, |b| {
-                    !b.is_ascii_alphanumeric() && !b"._-+".contains(&b)
-                });
+                let is_gap = |b: u8| !b.is_ascii_alphanumeric() && !b"._-+".contains(&b);
+                let word = piece(bytes, at, is_gap);
                 bytes.splice(word, WORDS[self.below(WORDS.len())].bytes());
             }
         }
@@ -119,10 +75,7 @@ impl Random {
 
 /// Returns the range around a place between two bytes that are ends.
 fn piece(bytes: &[u8], at: usize, is_end: impl Fn(u8) -> bool) -> std::ops::Range<usize> {
-    let start = bytes[..at]
-        .iter()
-        .rposition(|b| is_end(*b))
-        .map_or(0, |k| k + 1);
+    let start = bytes[..at].iter().rposition(|b| is_end(*b));
     let end = bytes[at..].iter().position(|b| is_end(*b));
-    start..end.map_or(bytes.len(), |k| at + k)
+    start.map_or(0, |k| k + 1)..end.map_or(bytes.len(), |k| at + k)
 }

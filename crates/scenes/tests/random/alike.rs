@@ -82,7 +82,7 @@ fn apart(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> (f64, usize) {
     let all = a.iter().zip(b).map(|(a, b)| (a - b).norm()).enumerate();
     all.fold(
         (0.0, 0),
-        |most, (i, apart)| if apart > most.0 { (apart, i) } else { most },
+        |most, (i, d)| if d > most.0 { (d, i) } else { most },
     )
 }
 
@@ -95,10 +95,8 @@ fn numbers(own: &Setup, other: &Setup, frame: &Frame) -> Result<Vec<usize>, Stri
     };
     let n = own.scene.model.particles();
     if other.scene.model.particles() != n {
-        return Err(format!(
-            "{n} particles become {}",
-            other.scene.model.particles()
-        ));
+        let now = other.scene.model.particles();
+        return Err(format!("{n} particles become {now}"));
     }
     let near = 1e-9 * (own.scene.extent().1 * frame.length + frame.shift.norm());
     let goals: Vec<_> = (0..n).map(|i| frame.place(place(own, i), 0.0)).collect();
@@ -107,11 +105,8 @@ fn numbers(own: &Setup, other: &Setup, frame: &Frame) -> Result<Vec<usize>, Stri
         return Ok((0..n).collect());
     }
     let mass = |setup: &Setup, i: usize| {
-        setup
-            .scene
-            .model
-            .network()
-            .map_or(1.0, |network| network.masses()[i])
+        let network = setup.scene.model.network();
+        network.map_or(1.0, |network| network.masses()[i])
     };
     let mut free = vec![true; n];
     let mut find = |i: usize| {
@@ -123,9 +118,7 @@ fn numbers(own: &Setup, other: &Setup, frame: &Frame) -> Result<Vec<usize>, Stri
         free[j] = false;
         Some(j)
     };
-    let found = (0..n)
-        .map(|i| find(i).ok_or(i))
-        .collect::<Result<Vec<_>, _>>();
+    let found: Result<Vec<_>, _> = (0..n).map(|i| find(i).ok_or(i)).collect();
     found.map_err(|i| format!("no particle begins where {i} does, at {}", goals[i]))
 }
 
@@ -183,12 +176,8 @@ impl<'a> Known<'a> {
         let size = self.setup.scene.extent().1;
         let far = 1.0 + frame.shift.norm() / size;
         for (k, ((t, places), growth)) in self.looks.iter().zip(&self.growth).enumerate() {
-            let solved = if self.method.solves_linear_systems() {
-                UNSOLVED * size
-            } else {
-                0.0
-            };
-            let allowed = SLACK * far * growth + solved;
+            let is_solved = f64::from(self.method.solves_linear_systems());
+            let allowed = SLACK * far * growth + is_solved * UNSOLVED * size;
             if allowed.is_nan() || allowed > HORIZON * size {
                 return Ok(());
             }
@@ -226,12 +215,10 @@ impl<'a> Known<'a> {
         let mut rest = start(self.setup, self.method)?;
         rest.restore(&checkpoint).map_err(|why| why.to_string())?;
         let ends = [&mut whole, &mut rest].map(|run| run.take_steps(count).is_ok());
-        if whole.blow_up() != rest.blow_up() {
-            return Err(format!(
-                "a run that goes on from a checkpoint blows up otherwise: {:?}, not {:?}",
-                rest.blow_up(),
-                whole.blow_up()
-            ));
+        let [own, other] = [&whole, &rest].map(Simulation::blow_up);
+        if own != other {
+            let what = "a run that goes on from a checkpoint blows up otherwise";
+            return Err(format!("{what}: {other:?}, not {own:?}"));
         }
         let bits = |run: &Simulation| run.state().iter().map(|y| y.to_bits()).collect::<Vec<_>>();
         // A run that has blown up is back where it was sound, which may be before the checkpoint.

@@ -80,11 +80,8 @@ fn exchanged(energies: &[Energy]) -> f64 {
     };
     let kinetic = energies.iter().map(|e| e.kinetic).fold(0.0, f64::max);
     let elastic = width(|e| e.elastic + e.contact);
-    let all = width(Energy::total);
-    kinetic
-        .max(elastic)
-        .max(width(|e| e.gravitational))
-        .max(all)
+    let others = [width(|e| e.gravitational), width(Energy::total)];
+    others.into_iter().fold(kinetic.max(elastic), f64::max)
 }
 
 /// Returns a sentence about the alarm of scene k if it is false, or missing.
@@ -140,9 +137,8 @@ fn fault(k: usize, grammar: &Grammar) -> Option<String> {
 fn alarms_of_energy_are_true() {
     let (scenes, first) = (told("A3_SCENES", SCENES), told("A3_FIRST", 0));
     let grammar = Grammar::new();
-    let faults: Vec<_> = (first..first + scenes)
-        .filter_map(|k| fault(k, &grammar))
-        .collect();
+    let all = first..first + scenes;
+    let faults: Vec<_> = all.filter_map(|k| fault(k, &grammar)).collect();
     for fault in &faults {
         println!("{fault}");
     }

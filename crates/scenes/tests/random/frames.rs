@@ -11,18 +11,10 @@ use crate::grammar::BODIES;
 use crate::kinds::{Kind, kind};
 
 /// Keys that hold obstacles, or fix something in the world.
+#[rustfmt::skip]
 const FIXED: [&str; 11] = [
-    "floor",
-    "box",
-    "capsule",
-    "sphere",
-    "obstacle",
-    "wind",
-    "drag",
-    "drag_per_mass",
-    "swing",
-    "constraint",
-    "pin",
+    "floor", "box", "capsule", "sphere", "obstacle", "wind", "drag", "drag_per_mass", "swing",
+    "constraint", "pin",
 ];
 
 /// Another frame: a place p becomes `length` (R M p) + `shift`, with the turn R about the vertical,
@@ -55,48 +47,22 @@ impl Frame {
 
     /// Lists the frames in which a scene has to move alike.
     pub fn all() -> Vec<Self> {
-        let shift = |x, y, z| Vector3::new(x, y, z);
+        let named = |name, change: fn(&mut Self)| {
+            let mut frame = Self { name, ..Self::SAME };
+            change(&mut frame);
+            frame
+        };
         vec![
-            Self {
-                name: "shifted",
-                shift: shift(5.0, 0.0, 3.0),
-                ..Self::SAME
-            },
-            Self {
-                name: "shifted far",
-                shift: shift(64.0, 0.0, -32.0),
-                ..Self::SAME
-            },
-            Self {
-                name: "turned",
-                turn: 0.7,
-                ..Self::SAME
-            },
-            Self {
-                name: "turned by half",
-                turn: PI,
-                ..Self::SAME
-            },
-            Self {
-                name: "mirrored",
-                is_mirrored: true,
-                ..Self::SAME
-            },
-            Self {
-                name: "in mm",
-                length: 1000.0,
-                ..Self::SAME
-            },
-            Self {
-                name: "moving",
-                velocity: shift(2.0, -1.0, 0.5),
-                ..Self::SAME
-            },
-            Self {
-                name: "reversed",
-                is_reversed: true,
-                ..Self::SAME
-            },
+            named("shifted", |it| it.shift = Vector3::new(5.0, 0.0, 3.0)),
+            named("shifted far", |it| {
+                it.shift = Vector3::new(64.0, 0.0, -32.0);
+            }),
+            named("turned", |it| it.turn = 0.7),
+            named("turned by half", |it| it.turn = PI),
+            named("mirrored", |it| it.is_mirrored = true),
+            named("in mm", |it| it.length = 1000.0),
+            named("moving", |it| it.velocity = Vector3::new(2.0, -1.0, 0.5)),
+            named("reversed", |it| it.is_reversed = true),
         ]
     }
 
@@ -134,10 +100,9 @@ impl Frame {
             return false;
         }
         // The cells of a lattice are numbered from the left, and folds begin to one side.
-        let lattices = ["jelly", "solid", "mesh", "fluid", "obstacle"]
-            .iter()
-            .any(|key| has(key));
-        let is_handed = lattices || says(&["folds", "file", "orientations"]);
+        let lattices = ["jelly", "solid", "mesh", "fluid", "obstacle"];
+        let is_handed =
+            lattices.iter().any(|key| has(key)) || says(&["folds", "file", "orientations"]);
         if self.is_mirrored && (is_handed || self.turn != 0.0) {
             return false;
         }
@@ -154,11 +119,8 @@ impl Frame {
             return false;
         }
         // The sides of a mesh are those of the world.
-        let sides = says(&["left", "right", "front", "back"]);
-        if self.turn != 0.0 && sides && says(&["file"]) {
-            return false;
-        }
-        if self.turn != 0.0 && says(&["orientations"]) {
+        let has_sides = says(&["left", "right", "front", "back"]) && says(&["file"]);
+        if self.turn != 0.0 && (has_sides || says(&["orientations"])) {
             return false;
         }
         // The pressure of the air is 101325 Pa.
@@ -173,8 +135,7 @@ impl Frame {
             return true;
         }
         let joints = scene["joint"].as_array();
-        let is_joined =
-            joints.is_some_and(|all| all.iter().any(|joint| joint.get("body").is_some()));
+        let is_joined = joints.is_some_and(|all| all.iter().any(|it| it.get("body").is_some()));
         let is_pinned = says(&["pin", "tank", "inflow", "outflow"]);
         if has("state") && scene["state"]["positions"].is_null() {
             return false;
@@ -242,24 +203,14 @@ impl Frame {
                 if self.velocity == Vector3::zeros() {
                     continue;
                 }
-                let at_rest = |table: &Map<String, Value>, key: &str| {
-                    let rows = table[key].as_array().unwrap();
-                    Value::from(vec![zero.clone(); rows.len()])
-                };
-                if name == "particles" || name == "state" && table.contains_key("positions") {
-                    let still = at_rest(table, "positions");
-                    let velocities = table.entry("velocities").or_insert(still);
-                    velocities
-                        .as_array_mut()
-                        .unwrap()
-                        .iter_mut()
-                        .for_each(|v| self.accelerate(v));
-                } else if name == "state" {
+                if name == "particles" || name == "state" {
+                    if let Some(rows) = table.get("positions").and_then(Value::as_array) {
+                        let still = Value::from(vec![zero.clone(); rows.len()]);
+                        table.entry("velocities").or_insert(still);
+                    }
                     let velocities = table.get_mut("velocities").and_then(Value::as_array_mut);
-                    velocities
-                        .into_iter()
-                        .flatten()
-                        .for_each(|v| self.accelerate(v));
+                    let all = velocities.into_iter().flatten();
+                    all.for_each(|velocity| self.accelerate(velocity));
                 } else if BODIES.contains(&name) {
                     self.accelerate(table.entry("velocity").or_insert(zero.clone()));
                 }
@@ -269,12 +220,8 @@ impl Frame {
 
     /// Adds the velocity of the frame.
     fn accelerate(&self, velocity: &mut Value) {
-        for (v, more) in velocity
-            .as_array_mut()
-            .unwrap()
-            .iter_mut()
-            .zip(&self.velocity)
-        {
+        let numbers = velocity.as_array_mut().unwrap().iter_mut();
+        for (v, more) in numbers.zip(&self.velocity) {
             *v = json!(v.as_f64().unwrap() + more);
         }
     }
@@ -343,10 +290,8 @@ fn vector_of(matrix: Matrix3<f64>) -> Vector3<f64> {
 /// Puts bodies, single particles, springs, joints and obstacles in the opposite order.
 fn reverse(scene: &mut Value) {
     let count = |list: &Value| list.as_array().map_or(0, Vec::len);
-    let (bodies, particles) = (
-        count(&scene["body"]),
-        count(&scene["particles"]["positions"]),
-    );
+    let bodies = count(&scene["body"]);
+    let particles = count(&scene["particles"]["positions"]);
     let turn = |number: &mut Value, count: usize| {
         if let Some(k) = number.as_u64() {
             *number = json!((count as u64).wrapping_sub(1 + k));

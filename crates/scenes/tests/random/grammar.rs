@@ -11,27 +11,13 @@ use crate::sense;
 
 /// Keys of a scene that refer to particles by number. They are added when the number of particles
 /// is known.
-pub const NUMBERED: [&str; 7] = [
-    "springs",
-    "constraint",
-    "joint",
-    "pin",
-    "torn",
-    "trail",
-    "state",
-];
+#[rustfmt::skip]
+pub const NUMBERED: [&str; 7] = ["springs", "constraint", "joint", "pin", "torn", "trail", "state"];
 
 /// Tables of the bodies, and their keys in a scene.
-pub const BODIES: [&str; 8] = [
-    "cloth",
-    "jelly",
-    "mesh",
-    "solid",
-    "chain",
-    "particles",
-    "body",
-    "fluid",
-];
+#[rustfmt::skip]
+pub const BODIES: [&str; 8] =
+    ["cloth", "jelly", "mesh", "solid", "chain", "particles", "body", "fluid"];
 
 /// The grammar of scene files.
 pub struct Grammar {
@@ -107,9 +93,10 @@ impl Writer<'_> {
         let required = required.map(|all| all.as_array().into_iter().flatten());
         let required: Vec<_> = required.into_iter().flatten().collect();
         let is_required = |key: &&str| required.iter().any(|r| *r == *key);
-        let mut keys: Vec<&str> = all()
+        let mut is_there = |key: &&str| is_required(key) || self.is_there(name, key);
+        let mut keys: Vec<_> = all()
             .map(String::as_str)
-            .filter(|key| is_required(key) || self.is_there(name, key))
+            .filter(|key| is_there(key))
             .collect();
         // A circle is alone.
         if name.is_empty() && self.chance.once_in(60) {
@@ -135,10 +122,7 @@ impl Writer<'_> {
         }
         for (_, key, others) in TOGETHER.iter().filter(|(table, ..)| *table == name) {
             keys.retain(|other| other != key);
-            if keys
-                .iter()
-                .any(|other| others.split(' ').any(|o| o == *other))
-            {
+            if others.split(' ').any(|other| keys.contains(&other)) {
                 keys.extend(among(&[key]));
             }
         }
@@ -224,8 +208,7 @@ impl Writer<'_> {
             (None, "positions") => 2 + self.chance.below(5),
             (None, _) => 1 + self.chance.below(2),
         };
-        (0..count)
-            .map(|_| self.value(table, key, &schema["items"]))
-            .collect()
+        let mut item = |_| self.value(table, key, &schema["items"]);
+        (0..count).map(&mut item).collect()
     }
 }

@@ -29,63 +29,21 @@ const BODIES: usize = 60;
 const FARTHEST: f64 = 1e5;
 
 /// Scenes and frames that are left out, with the reason.
+#[rustfmt::skip]
 const LEFT_OUT: &[(&str, &[&str], &str)] = &[
-    (
-        "dominoes",
-        &["mirrored"],
-        "impacts of many bodies depend on their order",
-    ),
-    (
-        "stack",
-        &["turned by half", "mirrored", "reversed"],
-        "impacts of many bodies depend on their order",
-    ),
-    (
-        "tangled",
-        &["reversed"],
-        "surfaces come apart in the order of the bodies",
-    ),
-    (
-        "turning",
-        &["turned by half"],
-        "impacts depend on the order of the sides of a box",
-    ),
-    (
-        "linkage",
-        &["turned"],
-        "implicit Euler takes a closed chain of hinges elsewhere",
-    ),
-    (
-        "bodies 24",
-        &["reversed"],
-        "impacts of many bodies depend on their order",
-    ),
-    (
-        "bodies 30",
-        &["reversed"],
-        "impacts of many bodies depend on their order",
-    ),
-    (
-        "bodies 46",
-        &["reversed"],
-        "impacts of many bodies depend on their order",
-    ),
-    (
-        "bodies 49",
-        &["reversed"],
-        "impacts of many bodies depend on their order",
-    ),
-    (
-        "random 106",
-        &["shifted", "shifted far", "turned"],
-        "surfaces begin in the same place",
-    ),
-    (
-        "windmill",
-        &["mirrored"],
-        "the sides of a box are cut along one of their diagonals",
-    ),
+    ("dominoes", &["mirrored"], ORDER),
+    ("stack", &["turned by half", "mirrored", "reversed"], ORDER),
+    ("tangled", &["reversed"], "surfaces come apart in the order of the bodies"),
+    ("turning", &["turned by half"], "impacts depend on the order of the sides of a box"),
+    ("linkage", &["turned"], "implicit Euler takes a closed chain of hinges elsewhere"),
+    ("bodies 24", &["reversed"], ORDER),
+    ("bodies 30", &["reversed"], ORDER),
+    ("bodies 46", &["reversed"], ORDER),
+    ("bodies 49", &["reversed"], ORDER),
+    ("random 106", &["shifted", "shifted far", "turned"], "surfaces begin in the same place"),
+    ("windmill", &["mirrored"], "the sides of a box are cut along one of their diagonals"),
 ];
+const ORDER: &str = "impacts of many bodies depend on their order";
 
 const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes");
 
@@ -108,23 +66,18 @@ fn build(scene: &Value) -> Result<Setup, String> {
 /// Lists the built-in scenes and those of the documentation.
 fn known() -> Vec<Named> {
     let read = |name: &str, text: &str| (name.to_owned(), toml::from_str(text).unwrap());
-    let mut all: Vec<Named> = SCENES
-        .iter()
-        .map(|scene| read(scene.name, scene.text))
-        .collect();
-    let mut files: Vec<_> = std::fs::read_dir(DOCS)
+    let files = std::fs::read_dir(DOCS)
         .unwrap()
-        .map(|file| file.unwrap().path())
-        .collect();
+        .map(|file| file.unwrap().path());
+    let scenes = files.filter(|it| it.extension().is_some_and(|e| e == "toml"));
+    let mut files: Vec<_> = scenes.collect();
     files.sort();
-    for file in files
-        .iter()
-        .filter(|file| file.extension().is_some_and(|e| e == "toml"))
-    {
+    let files = files.iter().map(|file| {
         let text = std::fs::read_to_string(file).unwrap();
-        all.push(read(file.file_stem().unwrap().to_str().unwrap(), &text));
-    }
-    all
+        read(file.file_stem().unwrap().to_str().unwrap(), &text)
+    });
+    let own = SCENES.iter().map(|scene| read(scene.name, scene.text));
+    own.chain(files).collect()
 }
 
 /// Creates random scene k, if it makes sense and is small.
@@ -169,9 +122,8 @@ fn faults(k: usize, (name, scene): &Named) -> Vec<String> {
     let suits =
         |frame: &Frame| frame.suits(scene) && has_mirror(frame) && !is_left_out(name, frame);
     let frames = Frame::all().into_iter().filter(suits);
-    let frames: Vec<_> = frames
-        .map(|frame| (build(&frame.of(scene)), frame))
-        .collect();
+    let built = frames.map(|frame| (build(&frame.of(scene)), frame));
+    let frames: Vec<_> = built.collect();
     let mut faults = vec![];
     for (built, frame) in &frames {
         if let Err(why) = built
@@ -231,12 +183,8 @@ fn check(count: usize, scene: impl Fn(usize) -> Option<Named> + Sync) {
     });
     let mut found = found.into_inner().unwrap();
     found.sort();
-    assert!(
-        found.is_empty(),
-        "{} faults:\n{}",
-        found.len(),
-        found.join("\n")
-    );
+    let count = found.len();
+    assert!(count == 0, "{count} faults:\n{}", found.join("\n"));
 }
 
 #[test]

@@ -1,6 +1,9 @@
 //! Short runs of random scenes by all methods: none panics, none hangs, and none explodes without a
 //! warning.
 
+#[path = "../common/mod.rs"]
+mod common;
+
 mod alike;
 mod bodies;
 mod chance;
@@ -52,13 +55,9 @@ fn time_taken(begun: Instant) -> Duration {
 }
 
 fn mesh(name: &str) -> Result<Mesh, String> {
-    let file = |path: &str| {
-        let seeds = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/");
-        std::fs::read(format!("{seeds}{path}")).unwrap()
-    };
     match name {
-        "two.msh" => Mesh::from_gmsh(&file("msh/two.msh")),
-        other => Mesh::from_obj(&file(&format!("obj/{other}"))),
+        "two.msh" => Mesh::from_gmsh(&common::seed("msh/two.msh")),
+        other => Mesh::from_obj(&common::seed(&format!("obj/{other}"))),
     }
 }
 
@@ -221,23 +220,17 @@ fn random_scenes_run_or_say_why_not() {
         }
         scope.spawn(|| watch(&trials, || done.load(Ordering::Relaxed) == workers));
     });
-    let results = results.into_inner().unwrap();
-    let Results {
-        taken,
-        well,
-        seen,
-        findings,
-        slowest,
-    } = results;
+    let all = results.into_inner().unwrap();
+    let (taken, well, slowest) = (all.taken, all.well, all.slowest);
     println!("{taken} of {scenes} scenes were taken, {well} ran well; the slowest is {slowest:?}");
-    let shown: Vec<_> = findings.iter().take(SHOWN).map(String::as_str).collect();
-    assert!(findings.is_empty(), "{}", shown.join("\n"));
+    let shown: Vec<_> = all.findings.into_iter().take(SHOWN).collect();
+    assert!(shown.is_empty(), "{}", shown.join("\n"));
     if scenes < SCENES {
         return;
     }
     assert!(10 * taken > 7 * scenes, "{taken} of {scenes} were taken");
     assert!(2 * well > scenes, "{well} of {scenes} ran well");
-    let all = Grammar::new().keys();
-    let unseen: Vec<_> = all.difference(&seen).collect();
+    let keys = Grammar::new().keys();
+    let unseen: Vec<_> = keys.difference(&all.seen).collect();
     assert!(unseen.is_empty(), "no run has {unseen:?}");
 }

@@ -79,11 +79,8 @@ fn constraints(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
             return false;
         };
         let (at, other) = (place(setup, i), place(setup, j));
-        if let Some(key) = ["rod", "rope"]
-            .into_iter()
-            .find(|key| row.contains_key(*key))
-        {
-            row.insert(key.into(), json!([i, j]));
+        if let Some(key) = ["rod", "rope"].iter().find(|key| row.contains_key(**key)) {
+            row.insert((*key).into(), json!([i, j]));
             let squared: f64 = at.iter().zip(other).map(|(a, b)| (a - b).powi(2)).sum();
             if row.contains_key("length") {
                 row.insert("length".into(), json!(squared.sqrt()));
@@ -93,18 +90,12 @@ fn constraints(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
         row.insert("particle".into(), json!(i));
         let radius = chance.within((0.1, 2.0, true));
         let [normal, out] = chance.corner();
-        let center: Vec<_> = at
-            .iter()
-            .zip(out)
-            .map(|(x, out)| x + radius * out)
-            .collect();
+        let center = [0, 1, 2].map(|k| at[k] + radius * out[k]);
+        let circle = json!({ "center": center, "normal": normal, "radius": radius });
         for (key, made) in [
             ("point", json!(at)),
             ("line", json!({ "point": at, "direction": normal })),
-            (
-                "circle",
-                json!({ "center": center, "normal": normal, "radius": radius }),
-            ),
+            ("circle", circle),
             ("sphere", json!({ "center": center, "radius": radius })),
         ] {
             if row.contains_key(key) {
@@ -187,27 +178,21 @@ fn state(value: &mut Value, setup: &Setup, chance: &mut Chance) -> bool {
     let n = setup.scene.model.particles();
     let far = chance.from(&[0.0, 1e-3, 0.1]);
     for (key, rows) in value.as_object_mut().unwrap() {
-        *rows = match key.as_str() {
-            "positions" => (0..n)
-                .map(|i| {
-                    let by = chance.triple((-far, far, false));
-                    let place = place(setup, i);
-                    json!([place[0] + by[0], place[1] + by[1], place[2] + by[2]])
-                })
-                .collect(),
-            "velocities" => (0..n)
-                .map(|_| json!(chance.triple((-1.0, 1.0, false))))
-                .collect(),
-            "orientations" => (0..bodies)
-                .map(|_| {
-                    let [x, y, z] = chance.direction();
-                    json!([0.6, 0.8 * x, 0.8 * y, 0.8 * z])
-                })
-                .collect(),
-            _ => (0..bodies)
-                .map(|_| json!(chance.triple((-0.1, 0.1, false))))
-                .collect(),
+        let of_particles = ["positions", "velocities"].contains(&key.as_str());
+        let mut row = |i: usize| match key.as_str() {
+            "positions" => {
+                let (by, place) = (chance.triple((-far, far, false)), place(setup, i));
+                json!([place[0] + by[0], place[1] + by[1], place[2] + by[2]])
+            }
+            "velocities" => json!(chance.triple((-1.0, 1.0, false))),
+            "orientations" => {
+                let [x, y, z] = chance.direction();
+                json!([0.6, 0.8 * x, 0.8 * y, 0.8 * z])
+            }
+            _ => json!(chance.triple((-0.1, 0.1, false))),
         };
+        let all = 0..if of_particles { n } else { bodies };
+        *rows = all.map(&mut row).collect();
     }
     true
 }

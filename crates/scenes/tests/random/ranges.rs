@@ -23,16 +23,12 @@ pub const NUMBERS: &[(&[&str], Range)] = &[
     (&["Cloth.turn", "Turn.angle"], (0.0, 1.0, false)),
     (&["Fluid.density"], (10.0, 3000.0, true)),
     (&["WindSpec.density"], (0.1, 10.0, true)),
-    (
-        &["at", "center", "from", "to", "point", "positions", "start"],
-        PLACE,
-    ),
+    (&["at", "center", "from", "to", "point"], PLACE),
+    (&["positions", "start"], PLACE),
     (&["floor", "height"], (-2.5, -1.0, false)),
     (&["about", "foot", "eye", "target"], PLACE),
-    (
-        &["right", "down", "direction", "normal", "axis", "by"],
-        PLACE,
-    ),
+    (&["right", "down", "direction", "normal"], PLACE),
+    (&["axis", "by"], PLACE),
     (&["velocity", "velocities", "spin", "amplitude"], PLACE),
     (&["angular_momenta", "orientations"], PLACE),
     (&["rotation", "phase"], ANGLE),
@@ -97,6 +93,9 @@ pub const WORDS: &[(&str, &[&str])] = &[
     ("solver", &["v"]),
 ];
 
+/// Kinds of constraints.
+const CONSTRAINTS: &[&str] = &["rod", "rope", "point", "line", "circle", "sphere"];
+
 /// Keys that exclude one another: each table has exactly one key of its list.
 pub const ONE: &[(&str, &[&str])] = &[
     ("Cloth", &["width", "spacing"]),
@@ -108,10 +107,7 @@ pub const ONE: &[(&str, &[&str])] = &[
     ("Turn", &["rate", "angle"]),
     ("WindSpec", &["force", "force_per_mass", "velocity"]),
     ("PartSpec", &["box", "ball", "capsule", "file"]),
-    (
-        "ConstraintSpec",
-        &["rod", "rope", "point", "line", "circle", "sphere"],
-    ),
+    ("ConstraintSpec", CONSTRAINTS),
     ("JointSpec", &["body", "bodies"]),
     ("JointSpec", &["ball", "hinge", "slider", "fixed"]),
 ];
@@ -153,21 +149,15 @@ pub const NEEDS: &[(&str, &str, &str)] = &[
 
 /// Spots of each kind of body.
 pub const SPOTS: &[(&str, &[&str])] = &[
-    (
-        "Cloth",
-        &[
-            "top",
-            "bottom",
-            "left",
-            "right",
-            "top-left",
-            "top-right",
-            "bottom-left",
-            "bottom-right",
-        ],
-    ),
+    ("Cloth", &SIDES),
     ("Jelly", &["top", "bottom", "left", "right"]),
     ("Solid", &["top", "bottom", "left", "right"]),
     ("MeshCloth", &["top", "bottom"]),
     ("Chain", &["first", "last"]),
+];
+
+/// Spots of a cloth.
+#[rustfmt::skip]
+const SIDES: [&str; 8] = [
+    "top", "bottom", "left", "right", "top-left", "top-right", "bottom-left", "bottom-right",
 ];

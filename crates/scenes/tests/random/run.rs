@@ -28,8 +28,8 @@ pub enum Ended {
 
 /// Whether anything does work on a scene except its own forces.
 fn is_driven(text: &str) -> bool {
-    ["sine", "shift", "turn", "wind", "torque"]
-        .iter()
+    "sine shift turn wind torque"
+        .split(' ')
         .any(|word| text.contains(word))
 }
 
@@ -87,10 +87,9 @@ pub fn run(
         let own = own_energy(&run, begin) + fallen + released;
         let gained = end.total() - begin.total();
         if gained.is_nan() || gained > EXPLODED * own {
-            let broken = run
-                .worst_constraint()
-                .is_some_and(|unmet| unmet.is_visible());
-            if broken || run.gained().is_some() {
+            let worst = run.worst_constraint();
+            let is_broken = worst.is_some_and(|unmet| unmet.is_visible());
+            if is_broken || run.gained().is_some() {
                 return Ok(Ended::Told);
             }
             return Err(format!("{gained:e} J of {own:e} J: {end:?}"));

@@ -28,8 +28,8 @@ pub fn mend(owner: &str, name: &str, table: &mut Map<String, Value>, chance: &mu
         }
         // The motion of a pin begins at its place.
         "Sine" if owner == "Pin" => {
-            table
-                .retain(|key, _| !["center", "phase"].contains(&key.as_str()) || chance.once_in(8));
+            let is_odd = |key: &str| ["center", "phase"].contains(&key);
+            table.retain(|key, _| !is_odd(key) || chance.once_in(8));
         }
         "Pin" => {
             table.retain(|key, _| !["at", "particles"].contains(&key.as_str()));
@@ -77,17 +77,9 @@ fn fluid(table: &mut Map<String, Value>, chance: &mut Chance) {
         tank.insert("size".into(), json!(size));
         tank.insert("at".into(), at);
     }
-    for outflow in table
-        .get_mut("outflow")
-        .and_then(Value::as_array_mut)
-        .into_iter()
-        .flatten()
-    {
-        outflow["size"][2] = if flat {
-            json!(0.0)
-        } else {
-            outflow["size"][2].take()
-        };
+    let outflows = table.get_mut("outflow").and_then(Value::as_array_mut);
+    for outflow in outflows.into_iter().flatten().filter(|_| flat) {
+        outflow["size"][2] = json!(0.0);
     }
     if let Some(Value::Object(inflow)) = table.get_mut("inflow") {
         let mut size = edges(3, spacing, flat, chance);
@@ -165,16 +157,7 @@ fn scene(table: &mut Map<String, Value>, chance: &mut Chance) {
         }
     }
     let mut cell = 0;
-    let places = [
-        "at",
-        "foot",
-        "from",
-        "to",
-        "positions",
-        "center",
-        "size",
-        "point",
-    ];
+    let places = "at foot from to positions center point";
     for (key, bodies) in table.iter_mut() {
         let bodies: Vec<&mut Value> = match bodies {
             Value::Array(bodies) if bodies.iter().all(Value::is_object) => {
@@ -188,12 +171,12 @@ fn scene(table: &mut Map<String, Value>, chance: &mut Chance) {
             cell += usize::from(!chance.once_in(8));
             let offset = [cell % 3, (cell / 3) % 3, cell / 9].map(|k| CELL * k as f64);
             let body = body.as_object_mut().unwrap();
-            if !body.contains_key("foot") && ["cloth", "mesh", "body", "obstacle"].contains(&&**key)
-            {
+            let has_default = ["cloth", "mesh", "body", "obstacle"].contains(&&**key);
+            if has_default && !body.contains_key("foot") {
                 body.entry("at").or_insert(json!([0.0, 0.0, 0.0]));
             }
-            for place in places.iter().filter(|place| **place != "size") {
-                if let Some(value) = body.get_mut(*place) {
+            for place in places.split(' ') {
+                if let Some(value) = body.get_mut(place) {
                     shift(value, offset);
                 }
             }

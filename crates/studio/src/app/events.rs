@@ -57,12 +57,7 @@ impl ApplicationHandler<Event> for App {
 
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
         // While the runs advance, each frame does this.
-        if self.screen.visible
-            && !self.session.animated()
-            && self
-                .mouse
-                .update_hover(self.modifiers.shift_key(), &mut self.session, &self.screen)
-        {
+        if self.screen.visible && !self.session.animated() && self.update_hover() {
             self.screen.redraw();
         }
     }
@@ -92,12 +87,9 @@ impl ApplicationHandler<Event> for App {
         }
         // All keys belong to the table of keys, none to egui.
         let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
-        let position = self.mouse.pointer.position;
+        let position = self.mouse.position;
         let taken = !is_key && (graphics.on_event(&event, position) || self.session.list.is_some())
-            || !self
-                .mouse
-                .pointer
-                .is_in_picture(&self.session, graphics.size(), graphics.scale());
+            || !self.is_in_picture();
         if let WindowEvent::MouseInput { state, .. } = event {
             self.session.readings.touch = false;
             self.session
@@ -107,7 +99,8 @@ impl ApplicationHandler<Event> for App {
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
-                graphics.resized();
+                let graphics = self.screen.graphics.iter_mut();
+                graphics.for_each(|graphics| graphics.stale = true);
                 self.screen.redraw();
             }
             WindowEvent::Occluded(hidden) => {
@@ -119,7 +112,7 @@ impl ApplicationHandler<Event> for App {
                 self.screen.redraw();
             }
             WindowEvent::ModifiersChanged(held) => self.modifiers = held.state(),
-            WindowEvent::Focused(false) => self.mouse.finish(&mut self.session, &self.screen),
+            WindowEvent::Focused(false) => self.finish(),
             WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
                 self.press_key(event_loop, &event);
             }
@@ -128,9 +121,7 @@ impl ApplicationHandler<Event> for App {
                 button,
                 ..
             } if !taken => {
-                let shift = self.modifiers.shift_key();
-                self.mouse
-                    .press(button, shift, &mut self.session, &self.screen);
+                self.press(button, self.modifiers.shift_key());
                 self.screen.redraw();
             }
             WindowEvent::MouseInput {
@@ -138,7 +129,7 @@ impl ApplicationHandler<Event> for App {
                 button,
                 ..
             } => {
-                self.mouse.release(button, &mut self.session, &self.screen);
+                self.release(button);
                 self.screen.redraw();
             }
             WindowEvent::Touch(touch) => change(self, &touch, taken),
@@ -148,13 +139,10 @@ impl ApplicationHandler<Event> for App {
                 }
                 self.screen.redraw();
             }
-            WindowEvent::CursorMoved { position, .. } => {
-                self.mouse
-                    .move_to(position, &mut self.session, &self.screen);
-            }
-            WindowEvent::CursorLeft { .. } => self.mouse.pointer.inside = false,
+            WindowEvent::CursorMoved { position, .. } => self.move_to(position),
+            WindowEvent::CursorLeft { .. } => self.mouse.inside = false,
             WindowEvent::MouseWheel { delta, .. } if !taken => {
-                self.session.view.camera = self.mouse.scroll(delta, &self.session, &self.screen);
+                self.scroll(delta);
                 self.screen.redraw();
             }
             WindowEvent::MouseInput { .. } | WindowEvent::MouseWheel { .. } => self.screen.redraw(),
@@ -167,29 +155,28 @@ impl ApplicationHandler<Event> for App {
 /// Puts the pointer where the first finger comes down.
 fn point(app: &mut App, touch: &Touch) {
     if app.fingers.begins(touch) {
-        app.mouse.pointer.position = position(touch);
-        app.mouse.pointer.inside = true;
+        app.mouse.position = position(touch);
+        app.mouse.inside = true;
     }
 }
 
 /// Does what a change of a finger means, which is `taken` if text or a button is there.
 fn change(app: &mut App, touch: &Touch, taken: bool) {
-    let (session, screen, mouse) = (&mut app.session, &app.screen, &mut app.mouse);
     let is_down = !matches!(touch.phase, TouchPhase::Ended | TouchPhase::Cancelled);
-    session.history.set_button_held(is_down);
-    session.readings.touch = true;
+    app.session.history.set_button_held(is_down);
+    app.session.readings.touch = true;
     let (id, at) = (touch.id, position(touch));
     match app.fingers.change(id, touch.phase, at, taken) {
         Effect::Nothing => {}
-        Effect::Press => mouse.press(MouseButton::Left, false, session, screen),
-        Effect::Move => mouse.move_to(touch.location, session, screen),
-        Effect::Release => mouse.release(MouseButton::Left, session, screen),
-        Effect::Finish => mouse.finish(session, screen),
+        Effect::Press => app.press(MouseButton::Left, false),
+        Effect::Move => app.move_to(touch.location),
+        Effect::Release => app.release(MouseButton::Left),
+        Effect::Finish => app.finish(),
         Effect::Pinch(places) => {
-            let tile = screen.tile(session, mouse.pointer.pane(session, screen));
-            pinch(&mut session.view.camera, tile, places);
+            let tile = app.screen.tile(&app.session, app.pane());
+            pinch(&mut app.session.view.camera, tile, places);
         }
     }
-    mouse.pointer.inside &= is_down;
-    screen.redraw();
+    app.mouse.inside &= is_down;
+    app.screen.redraw();
 }

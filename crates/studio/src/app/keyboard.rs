@@ -7,22 +7,21 @@ use crate::session::{self, Action, PanelKey, TextKey, WindowAction};
 
 /// Returns the action of a key, if it has one.
 pub fn action(key: &Key) -> Option<Action> {
-    match key {
-        Key::Named(NamedKey::Space) => session::action("Space"),
-        Key::Named(NamedKey::Escape) => session::action("Esc"),
-        Key::Named(NamedKey::Tab) => session::action("Tab"),
-        Key::Named(NamedKey::Delete) => session::action("Del"),
-        Key::Named(NamedKey::F11) => session::action("F11"),
-        Key::Named(NamedKey::PageUp) => session::action("PgUp"),
-        Key::Named(NamedKey::PageDown) => session::action("PgDn"),
-        Key::Named(NamedKey::F1) => session::action("F1"),
-        Key::Named(NamedKey::F3) => session::action("F3"),
-        Key::Named(NamedKey::F2) => session::action("F2"),
-        Key::Named(NamedKey::F4) => session::action("F4"),
-        Key::Character(text) if text == " " => session::action("Space"),
-        Key::Character(text) if text.chars().count() == 1 => session::action(text),
-        _ => None,
-    }
+    let named;
+    session::action(match key {
+        Key::Named(NamedKey::Escape) => "Esc",
+        Key::Named(NamedKey::Delete) => "Del",
+        Key::Named(NamedKey::PageUp) => "PgUp",
+        Key::Named(NamedKey::PageDown) => "PgDn",
+        // Space, Tab and F1 to F11 have the same names here.
+        Key::Named(key) => {
+            named = format!("{key:?}");
+            &named
+        }
+        Key::Character(text) if text == " " => "Space",
+        Key::Character(text) if text.chars().count() == 1 => text,
+        _ => return None,
+    })
 }
 
 /// Returns the number of steps by which a key, with Ctrl, enlarges text and panel; 0 resets their

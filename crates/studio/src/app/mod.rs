@@ -1,12 +1,7 @@
 //! The window, from events to frames: the only module that uses winit.
 
-mod adapter;
 mod events;
-#[cfg(not(target_arch = "wasm32"))]
-mod filming;
-mod frame;
 mod graphics;
-mod hover;
 mod keyboard;
 mod mouse;
 mod pick;
@@ -17,10 +12,7 @@ mod screen;
 mod start;
 mod state;
 mod status;
-mod tool;
 mod touch;
-#[cfg(not(target_arch = "wasm32"))]
-mod watch;
 
 #[cfg(target_arch = "wasm32")]
 pub use platform::{Event, send};

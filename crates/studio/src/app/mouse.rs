@@ -1,19 +1,19 @@
-//! Actions of the mouse: pulling, turning and moving the camera, and pinning.
+//! What the mouse does: pulling, turning and moving the camera, pinning, and editing the scene. The
+//! shape of the pointer and a highlight tell the effect of a press.
 
 use a3_core::Vector3;
 use a3_media::show::{self, Target};
-use a3_render::Camera;
 use egui::CursorIcon;
-use web_time::{Duration, Instant};
 use winit::dpi::PhysicalPosition;
 use winit::event::{MouseButton, MouseScrollDelta};
 
-use super::pick::Grip;
-use super::pointer::Pointer;
-use super::screen::Screen;
-use super::tool;
-use crate::hud::plotting;
-use crate::session::{RulerEnd, Selection, Session, apply, looks};
+use super::graphics::Graphics;
+use super::pick::{Grip, Sight};
+use super::pointer::Drag;
+use super::state::App;
+use crate::hud::edit::{self, Aim, Throw, click, join};
+use crate::hud::{layout, plotting};
+use crate::session::{RulerEnd, Selection, Session, Tool, apply, looks};
 
 /// Largest motion of the pointer during a click of the mouse, and of a finger (points).
 const MAX_CLICK_DISTANCES: [f32; 2] = [4.0, 10.0];
@@ -21,177 +21,236 @@ const MAX_CLICK_DISTANCES: [f32; 2] = [4.0, 10.0];
 const ORBIT_ANGLE: f32 = 4.0;
 /// Least height of the eye above the ground to which a drag turns it, in units of length.
 const ABOVE_GROUND: f32 = 0.05;
-/// Time after which a finger that has not moved pins.
-const LONG_PRESS: Duration = Duration::from_millis(550);
 /// Smooth scrolling that counts as a notch of the wheel (px).
 const PIXELS_PER_NOTCH: f32 = 50.0;
+/// Distances from the pointer within which a particle is picked, and within which a spring, a rod
+/// or a rope is found (points).
+const PICK_DISTANCES: [f32; 2] = [18.0, 9.0];
+/// Factor of the mass of a heavy ball.
+const HEAVY: f64 = 10.0;
+/// Factor of the speed that a drag by the height of the picture adds.
+const PULL: f32 = 4.0;
 
-/// A drag: the effect of a pressed button while the pointer moves.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Drag {
-    /// No action.
-    None,
-    /// Pull a particle or push an obstacle.
-    Pull(Grip),
-    /// Turn the camera.
-    Orbit,
-    /// Move the camera.
-    Pan,
-    /// Move an end of the ruler.
-    Rule,
-    /// Edit the scene by a click, or join a particle to another one by a drag.
-    Tool(Option<usize>),
-    /// Pin or free the particles in a box between the corner `from` (px) and the pointer.
-    Select { from: [f32; 2], pinned: bool },
-}
+impl App {
+    /// Returns the pane under the pointer, or else the pane that it was over last.
+    pub fn pane(&self) -> usize {
+        let (session, position) = (&self.session, self.mouse.position);
+        let last = session.panel.pane.min(session.runs.panes.len() - 1);
+        self.screen.pane_at(session, position).unwrap_or(last)
+    }
 
-/// The mouse.
-pub struct Mouse {
-    pub pointer: Pointer,
-    /// The present drag.
-    pub drag: Drag,
-    /// The pane in which the button was pressed.
-    pane: usize,
-    /// The pressed button: the first one, if there are several.
-    pub button: Option<MouseButton>,
-    /// The shape of the pointer over the picture.
-    pub cursor: CursorIcon,
-}
-
-impl Mouse {
-    /// Creates a mouse outside the window, with no button pressed.
-    pub fn new() -> Self {
-        Self {
-            pointer: Pointer::new(),
-            drag: Drag::None,
-            pane: 0,
-            button: None,
-            cursor: CursorIcon::Default,
+    /// Returns the line of sight through a place (px) in a pane.
+    fn sight(&self, place: [f32; 2], pane: usize) -> Sight<'_> {
+        let tile = self.screen.tile(&self.session, pane);
+        Sight {
+            run: &self.session.runs.panes[pane].simulation,
+            camera: &self.session.view.camera,
+            at: tile.place(place),
+            aspect: tile.aspect(),
         }
     }
 
+    /// Returns the distances within which things are picked in a pane, as shares of its height.
+    fn reach(&self, pane: usize) -> [f32; 2] {
+        let height = self.screen.tile(&self.session, pane).height as f32;
+        PICK_DISTANCES.map(|points| points * self.screen.scale() / height)
+    }
+
+    /// Returns the particle or obstacle under the pointer in a pane; `None` in a diverged run.
+    fn hit(&self, pane: usize) -> Option<(Target, Grip)> {
+        let alive = self.session.runs.panes[pane].alive();
+        let sight = self.sight(self.mouse.position, pane);
+        alive.then(|| sight.pick(self.reach(pane)[0])).flatten()
+    }
+
+    /// Returns the particle under the pointer in a pane.
+    pub fn particle(&self, pane: usize) -> Option<usize> {
+        self.hit(pane).and_then(|(target, _)| target.particle())
+    }
+
+    /// Returns the particles that the spring, the rod or the rope under the pointer joins.
+    fn link(&self, pane: usize) -> Option<[usize; 2]> {
+        let sight = self.sight(self.mouse.position, pane);
+        sight.link(self.reach(pane)[1])
+    }
+
+    /// Returns where the line of sight through a place (px) in a pane ends.
+    fn aim(&self, place: [f32; 2], pane: usize) -> Aim {
+        let ground = self.session.runs.panes[pane].show.ground();
+        self.sight(place, pane).aim(ground)
+    }
+
+    /// Returns whether the pointer is at a place of the picture.
+    pub fn is_in_picture(&self) -> bool {
+        let picture = |graphics: &Graphics| {
+            layout::picture_size(&self.session, graphics.size(), graphics.scale())
+        };
+        let [x, y] = self.mouse.position;
+        self.screen.graphics.as_ref().is_some_and(|graphics| {
+            let (width, height) = picture(graphics);
+            (0.0..width as f32).contains(&x) && (0.0..height as f32).contains(&y)
+        })
+    }
+
+    /// Returns whether the pointer is over the picture, where presses act on the scene.
+    fn is_over_picture(&self) -> bool {
+        let covers = |graphics: &Graphics| graphics.covers(self.mouse.position);
+        let is_covered = self.screen.graphics.as_ref().is_some_and(covers);
+        let is_free = self.session.list.is_none() && !self.session.readings.help;
+        self.is_in_picture() && self.mouse.inside && is_free && !is_covered
+    }
+
     /// Starts the drag of a button at the pointer, with or without Shift.
-    pub fn press(
-        &mut self,
-        button: MouseButton,
-        shift: bool,
-        session: &mut Session,
-        screen: &Screen,
-    ) {
+    pub fn press(&mut self, button: MouseButton, shift: bool) {
         // Ignore a second button.
-        if self.button.is_some() {
+        if self.mouse.button.is_some() {
             return;
         }
-        let pane = self.pointer.pane(session, screen);
-        let double = self.pointer.press();
-        let hit = self.pointer.hit(session, screen, pane);
-        let select = |pinned| Drag::Select {
-            from: self.pointer.position,
-            pinned,
-        };
+        let (pane, double) = (self.pane(), self.mouse.begin_press());
+        let hit = self.hit(pane);
+        let particle = hit.and_then(|(target, _)| target.particle());
         let drag = match button {
-            MouseButton::Left | MouseButton::Right if shift => select(button == MouseButton::Left),
-            MouseButton::Left if session.panel.plotting.is_ruling() => {
-                let end = self.ruler_end(session, screen, pane);
-                session.panel.plotting.begin_end(end);
+            MouseButton::Left | MouseButton::Right if shift => Drag::Select {
+                from: self.mouse.position,
+                pinned: button == MouseButton::Left,
+            },
+            MouseButton::Left if self.session.panel.plotting.is_ruling() => {
+                let end = self.ruler_end(pane);
+                self.session.panel.plotting.begin_end(end);
                 Drag::Rule
             }
-            MouseButton::Left if session.panel.editor.open => {
-                let joins = session.panel.editor.tool.joins();
-                let particle = hit.and_then(|(target, _)| target.particle());
+            MouseButton::Left if self.session.panel.editor.open => {
+                let joins = self.session.panel.editor.tool.joins();
                 Drag::Tool(particle.filter(|_| joins))
             }
             MouseButton::Left => {
                 if double {
-                    let particle = hit.and_then(|(target, _)| target.particle());
-                    let link = tool::link_at(&self.pointer, session, screen, pane);
-                    let link = link.filter(|_| hit.is_none());
-                    double_click(session, particle, link);
+                    let link = self.link(pane).filter(|_| hit.is_none());
+                    double_click(&mut self.session, particle, link);
                 }
+                let runs = &mut self.session.runs;
                 match hit {
-                    Some((Target::Particle(i), grip)) if session.runs.grab(i) => Drag::Pull(grip),
-                    Some((Target::Obstacle(k), grip)) if session.runs.grab_obstacle(k) => {
-                        Drag::Pull(grip)
-                    }
+                    Some((Target::Particle(i), grip)) if runs.grab(i) => Drag::Pull(grip),
+                    Some((Target::Obstacle(k), grip)) if runs.grab_obstacle(k) => Drag::Pull(grip),
                     _ => Drag::Orbit,
                 }
             }
             MouseButton::Right | MouseButton::Middle => Drag::Pan,
             _ => return,
         };
-        session.pulled |= matches!(drag, Drag::Pull(_));
-        (self.drag, self.pane, self.button) = (drag, pane, Some(button));
+        self.session.pulled |= matches!(drag, Drag::Pull(_));
+        let mouse = &mut self.mouse;
+        (mouse.drag, mouse.pane, mouse.button) = (drag, pane, Some(button));
     }
 
     /// Ends the drag of a button. A right click pins or frees the particle under the pointer.
-    pub fn release(&mut self, button: MouseButton, session: &mut Session, screen: &Screen) {
-        if self.button != Some(button) {
+    pub fn release(&mut self, button: MouseButton) {
+        let (pane, drag) = (self.mouse.pane, self.mouse.drag);
+        if self.mouse.button != Some(button) {
             return;
         }
-        if button == MouseButton::Right
-            && self.pointer.is_click()
-            && self.drag == Drag::Pan
-            && let Some((Target::Particle(i), _)) = self.pointer.hit(session, screen, self.pane)
+        let is_right_click = button == MouseButton::Right && self.mouse.still;
+        if is_right_click
+            && drag == Drag::Pan
+            && let Some(i) = self.particle(pane)
         {
-            session.toggle_pin(i);
+            self.session.toggle_pin(i);
         }
-        if let Drag::Tool(from) = self.drag {
-            tool::release(&self.pointer, from, session, screen, self.pane);
+        if let Drag::Tool(from) = drag {
+            self.use_tool(from, pane);
         }
-        self.finish(session, screen);
+        self.finish();
     }
 
-    /// Returns when a finger that has not moved since it came down has pressed for long, and pins.
-    pub fn long_press_at(&self) -> Option<Instant> {
-        let is_still = matches!(self.drag, Drag::Pull(_) | Drag::Orbit) && self.pointer.is_click();
-        is_still.then(|| self.pointer.pressed() + LONG_PRESS)
+    /// Edits the scene after the button was released in a pane: where it clicked, or between the
+    /// particle `from` and that under the pointer.
+    fn use_tool(&mut self, from: Option<usize>, pane: usize) {
+        let (is_click, position) = (self.mouse.still, self.mouse.position);
+        if is_click {
+            let aim = Aim {
+                target: self.hit(pane).map(|(target, _)| target),
+                link: self.link(pane),
+                ..self.aim(position, pane)
+            };
+            click(&mut self.session, &aim);
+        } else if let Some(i) = from {
+            if let Some(j) = self.particle(pane) {
+                join(&mut self.session, [i, j]);
+            } else {
+                let why = "There is no particle here to join.";
+                self.session.readings.say(why);
+            }
+        } else if self.session.panel.editor.tool.throws() {
+            let height = self.screen.tile(&self.session, pane).height as f32;
+            let how = Throw {
+                speed: f64::from(1.0 + PULL * self.mouse.dragged(position) / height),
+                ..Throw::default()
+            };
+            let aim = self.aim(position, pane);
+            edit::throw(&mut self.session, &aim, how);
+        }
+    }
+
+    /// Throws a ball, with Shift a heavy one, to the pointer or, if that is elsewhere, into the
+    /// picture.
+    pub fn throw(&mut self, pane: usize) {
+        let tile = self.screen.tile(&self.session, pane);
+        let middle = [tile.x + tile.width / 2, tile.y + tile.height / 2].map(|px| px as f32);
+        let place = if self.is_over_picture() {
+            self.mouse.position
+        } else {
+            middle
+        };
+        let aim = self.aim(place, pane);
+        let how = Throw {
+            mass: if self.modifiers.shift_key() {
+                HEAVY
+            } else {
+                1.0
+            },
+            ..Throw::default()
+        };
+        let tool = &mut self.session.panel.editor.tool;
+        let chosen = std::mem::replace(tool, Tool::ThrowBall);
+        edit::throw(&mut self.session, &aim, how);
+        self.session.panel.editor.tool = chosen;
     }
 
     /// Pins or frees the particle under a finger that has pressed for long, and ends its drag.
-    pub fn long_press(&mut self, session: &mut Session, screen: &Screen) {
-        let pulled = session.runs.panes[self.pane].simulation.grabbed();
-        let hit = self.pointer.hit(session, screen, self.pane);
-        let particle = pulled.or(hit.and_then(|(target, _)| target.particle()));
-        self.finish(session, screen);
+    pub fn long_press(&mut self) {
+        let pane = self.mouse.pane;
+        let pulled = self.session.runs.panes[pane].simulation.grabbed();
+        let particle = pulled.or(self.particle(pane));
+        self.finish();
         if let Some(i) = particle {
-            session.toggle_pin(i);
+            self.session.toggle_pin(i);
         }
     }
 
     /// Ends the drag: pins or frees the particles in the box, and releases a grabbed particle or
     /// obstacle.
-    pub fn finish(&mut self, session: &mut Session, screen: &Screen) {
-        if let Drag::Select { pinned, .. } = self.drag
-            && session.readings.selection.take().is_some()
+    pub fn finish(&mut self) {
+        if let Drag::Select { from, pinned } = self.mouse.drag
+            && self.session.readings.selection.take().is_some()
         {
-            session.pin_all(&self.selected_particles(session, screen), pinned);
+            let selected = self.selected_particles(from);
+            self.session.pin_all(&selected, pinned);
         }
-        session.release();
-        for pane in &mut session.runs.panes {
+        self.session.release();
+        for pane in &mut self.session.runs.panes {
             pane.show.joining = None;
         }
-        self.abort();
+        self.mouse.abort();
     }
 
-    /// Ends the drag without an effect on the session.
-    pub fn abort(&mut self) {
-        // Another session may have fewer panes.
-        (self.drag, self.button, self.pane) = (Drag::None, None, 0);
-    }
-
-    /// Returns the particles in the box, without the walls of tanks.
-    fn selected_particles(&self, session: &Session, screen: &Screen) -> Vec<usize> {
-        let Drag::Select { from, .. } = self.drag else {
-            return vec![];
-        };
-        let (tile, to) = (screen.tile(session, self.pane), self.pointer.position);
-        let run = &session.runs.panes[self.pane].simulation;
-        let (a, b) = (tile.place(from), tile.place(to));
-        let inside =
-            |at: [f32; 2]| (0..2).all(|k| (a[k].min(b[k])..=a[k].max(b[k])).contains(&at[k]));
+    /// Returns the particles in the box from a corner (px), without the walls of tanks.
+    fn selected_particles(&self, from: [f32; 2]) -> Vec<usize> {
+        let [a, b] = [from, self.mouse.position].map(|at| self.sight(at, self.mouse.pane));
+        let (run, project) = (a.run, a.camera.projection(a.aspect));
+        let ranges = [0, 1].map(|k| a.at[k].min(b.at[k])..=a.at[k].max(b.at[k]));
+        let inside = |at: [f32; 2]| (0..2).all(|k| ranges[k].contains(&at[k]));
         let network = run.model().network();
         let is_wall = |i: usize| network.is_some_and(|network| network.is_wall(i));
-        let project = session.view.camera.projection(tile.aspect());
         (0..run.particles())
             .filter(|i| {
                 let seen = project(show::to_f32(run.position(*i)));
@@ -200,53 +259,44 @@ impl Mouse {
             .collect()
     }
 
-    /// Returns the point (m) to which the pointer pulls the grabbed particle or obstacle.
-    pub fn target(&self, session: &Session, screen: &Screen) -> Option<Vector3<f64>> {
-        let Drag::Pull(grip) = self.drag else {
-            return None;
-        };
-        let tile = screen.tile(session, self.pane);
-        let place = tile.place(self.pointer.position);
-        let target = grip.target(&session.view.camera, place, tile.aspect());
-        Some(Vector3::from(target).cast())
+    /// Pulls the grabbed particle or obstacle to the pointer.
+    pub fn pull(&mut self) {
+        if let Drag::Pull(grip) = self.mouse.drag {
+            let sight = self.sight(self.mouse.position, self.mouse.pane);
+            let target = sight.dragged(grip);
+            self.session.runs.pull(target);
+        }
     }
 
     /// Moves the pointer, and continues the drag.
-    pub fn move_to(
-        &mut self,
-        position: PhysicalPosition<f64>,
-        session: &mut Session,
-        screen: &Screen,
-    ) {
+    pub fn move_to(&mut self, position: PhysicalPosition<f64>) {
         let position = [position.x as f32, position.y as f32];
-        self.pointer.inside = true;
-        let under = screen.pane_at(session, position);
-        session.panel.pane = under.unwrap_or(session.panel.pane);
+        let (pane, was) = (self.mouse.pane, self.mouse.position);
+        self.mouse.inside = true;
+        if let Some(under) = self.screen.pane_at(&self.session, position) {
+            self.session.panel.pane = under;
+        }
         // The panel, the bar, lists and the help highlight the row or button under the pointer.
-        screen.redraw();
-        let tile = screen.tile(session, self.pane);
+        self.screen.redraw();
+        let tile = self.screen.tile(&self.session, pane);
         // Do not move the camera until the pointer is too far for a click.
-        let still = MAX_CLICK_DISTANCES[usize::from(session.readings.touch)];
-        self.pointer.update_click(position, still * screen.scale());
-        if self.pointer.is_click() && self.drag == Drag::Pan {
+        let most = MAX_CLICK_DISTANCES[usize::from(self.session.readings.touch)];
+        self.mouse.still &= self.mouse.dragged(position) <= most * self.screen.scale();
+        if self.mouse.still && self.mouse.drag == Drag::Pan {
             return;
         }
-        let throws = session.panel.editor.tool.throws();
-        if self.drag == Drag::Tool(None) && !self.pointer.is_click() && !throws {
-            self.drag = Drag::Orbit;
+        let throws = self.session.panel.editor.tool.throws();
+        if self.mouse.drag == Drag::Tool(None) && !self.mouse.still && !throws {
+            self.mouse.drag = Drag::Orbit;
         }
-        let ([x, y], [was_x, was_y]) = (tile.place(position), tile.place(self.pointer.position));
+        let ([x, y], [was_x, was_y]) = (tile.place(position), tile.place(was));
         let (dx, dy, aspect) = (x - was_x, y - was_y, tile.aspect());
-        self.pointer.position = position;
-        if self.drag == Drag::Rule && !self.pointer.is_click() {
-            let end = self.ruler_end(session, screen, self.pane);
-            session.panel.plotting.move_end(end);
-        }
-        let camera = &mut session.view.camera;
-        match self.drag {
+        self.mouse.position = position;
+        let camera = &mut self.session.view.camera;
+        match self.mouse.drag {
             Drag::Orbit => {
                 // From below, the lines of the floor would lie over the scene.
-                let ground = session.runs.panes[self.pane].show.ground();
+                let ground = self.session.runs.panes[pane].show.ground();
                 let lowest = ground.map_or(f32::MIN, |height| {
                     height as f32 + ABOVE_GROUND * camera.unit()
                 });
@@ -254,51 +304,100 @@ impl Mouse {
             }
             Drag::Pan => camera.pan(-dx * aspect, dy),
             Drag::Select { from, pinned } => {
-                let scale = screen.scale();
-                session.readings.selection = Some(Selection {
+                let scale = self.screen.scale();
+                self.session.readings.selection = Some(Selection {
                     corners: [from, position].map(|at| at.map(|px| px / scale)),
-                    count: self.selected_particles(session, screen).len(),
+                    count: self.selected_particles(from).len(),
                     pinned,
                 });
             }
+            Drag::Rule if !self.mouse.still => {
+                let end = self.ruler_end(pane);
+                self.session.panel.plotting.move_end(end);
+            }
             Drag::Tool(Some(i)) => {
-                let end = tool::end(&self.pointer, i, session, screen, self.pane);
-                session.runs.panes[self.pane].show.joining = end.map(|end| (i, end));
+                let run = &self.session.runs.panes[pane].simulation;
+                let at = self.particle(pane).map(|j| run.position(j));
+                let end = at.or_else(|| self.beside(run.position(i), pane));
+                self.session.runs.panes[pane].show.joining = end.map(|end| (i, end));
             }
             Drag::Pull(_) | Drag::Tool(None) | Drag::Rule | Drag::None => {}
         }
     }
 
-    /// Returns the end of the ruler at the pointer: a particle, or a point in the plane of the
-    /// other end, or else of the centre of the view, that is parallel to the picture.
-    fn ruler_end(&self, session: &Session, screen: &Screen, pane: usize) -> RulerEnd {
-        let hit = self.pointer.hit(session, screen, pane);
-        if let Some(i) = hit.and_then(|(target, _)| target.particle()) {
-            return RulerEnd::Particle(i);
-        }
-        let (tile, camera) = (screen.tile(session, pane), &session.view.camera);
-        let ruler = session.panel.plotting.ruler.as_deref().unwrap_or_default();
-        let run = &session.runs.panes[pane].simulation;
-        let other = ruler.first().and_then(|end| end.place(run));
-        let through = other.map_or(camera.target().coords.into(), show::to_f32);
-        let distance = camera.project(through, tile.aspect());
-        let distance = distance.map_or(1.0, |(_, distance)| distance);
-        let at = tile.place(self.pointer.position);
-        let point = camera.unproject(at, distance, tile.aspect());
-        RulerEnd::Point(Vector3::from(point).cast())
+    /// Returns the point at the pointer that is as deep in the picture of a pane as another one
+    /// (m), if that is seen.
+    fn beside(&self, other: Vector3<f64>, pane: usize) -> Option<Vector3<f64>> {
+        let sight = self.sight(self.mouse.position, pane);
+        let (_, depth) = sight.camera.project(show::to_f32(other), sight.aspect)?;
+        Some(sight.point(depth))
     }
 
-    /// Returns the camera zoomed towards the pointer by the notches of the wheel.
-    pub fn scroll(&self, delta: MouseScrollDelta, session: &Session, screen: &Screen) -> Camera {
+    /// Returns the end of the ruler at the pointer: a particle, or a point in the plane of the
+    /// other end, or else of the centre of the view, that is parallel to the picture.
+    fn ruler_end(&self, pane: usize) -> RulerEnd {
+        if let Some(i) = self.particle(pane) {
+            return RulerEnd::Particle(i);
+        }
+        let sight = self.sight(self.mouse.position, pane);
+        let ruler = self.session.panel.plotting.ruler.iter().flatten().next();
+        let other = ruler.and_then(|end| end.place(sight.run));
+        let centre = sight.camera.target().coords.into();
+        let through = other.map_or(centre, show::to_f32);
+        let seen = sight.camera.project(through, sight.aspect);
+        RulerEnd::Point(sight.point(seen.map_or(1.0, |(_, distance)| distance)))
+    }
+
+    /// Zooms the camera towards the pointer by the notches of the wheel.
+    pub fn scroll(&mut self, delta: MouseScrollDelta) {
         let notches = match delta {
             MouseScrollDelta::LineDelta(_, y) => y,
             MouseScrollDelta::PixelDelta(p) => p.y as f32 / PIXELS_PER_NOTCH,
         };
-        let tile = screen.tile(session, self.pointer.pane(session, screen));
-        let at = tile.place(self.pointer.position);
-        let (factor, mut camera) = (0.9f32.powf(notches), session.view.camera);
+        let tile = self.screen.tile(&self.session, self.pane());
+        let (at, factor) = (tile.place(self.mouse.position), 0.9f32.powf(notches));
+        let camera = &mut self.session.view.camera;
         camera.zoom_at(factor, at, tile.aspect());
-        camera
+    }
+
+    /// Finds what is under the pointer, and sets the pointer's shape and the highlight. Returns
+    /// whether shape or highlight changed.
+    pub fn update_hover(&mut self) -> bool {
+        let (at, panel) = (self.pane(), &self.session.panel);
+        let boxes = self.modifiers.shift_key() || panel.plotting.is_ruling();
+        let (cursor, hovered) = match self.mouse.drag {
+            Drag::Pull(_) => (CursorIcon::Grabbing, None),
+            Drag::Orbit => (CursorIcon::AllScroll, None),
+            Drag::Pan => (CursorIcon::Move, None),
+            Drag::Select { .. } | Drag::Rule => (CursorIcon::Crosshair, None),
+            Drag::Tool(_) => (CursorIcon::Crosshair, self.tool_target(at)),
+            Drag::None if !self.is_over_picture() => (CursorIcon::Default, None),
+            Drag::None if boxes => (CursorIcon::Crosshair, None),
+            Drag::None if panel.editor.open => (CursorIcon::Crosshair, self.tool_target(at)),
+            Drag::None => match self.hit(at).map(|(target, _)| target) {
+                Some(target @ Target::Particle(_)) => (CursorIcon::Grab, Some(target)),
+                Some(target @ Target::Obstacle(_)) => (CursorIcon::Move, Some(target)),
+                None => (CursorIcon::Default, None),
+            },
+        };
+        let mut changed = self.mouse.cursor != cursor;
+        self.mouse.cursor = cursor;
+        for (k, pane) in self.session.runs.panes.iter_mut().enumerate() {
+            let hovered = hovered.filter(|_| k == at);
+            changed |= pane.show.hovered != hovered;
+            pane.show.hovered = hovered;
+        }
+        changed
+    }
+
+    /// Returns what the chosen tool would act on under the pointer, if it acts on something.
+    fn tool_target(&self, pane: usize) -> Option<Target> {
+        let (hit, _) = self.hit(pane)?;
+        match self.session.panel.editor.tool {
+            Tool::Delete => Some(hit),
+            tool if tool.joins() => Some(hit).filter(|hit| hit.particle().is_some()),
+            _ => None,
+        }
     }
 }
 
@@ -306,7 +405,8 @@ impl Mouse {
 /// particles. Without either, which is on the background, closes the list.
 fn double_click(session: &mut Session, particle: Option<usize>, link: Option<[usize; 2]>) {
     if link.is_none() {
-        looks::show_springs_of(&mut session.runs.panes, particle);
+        let panes = &mut session.runs.panes;
+        looks::each(panes, |show| show.springs_of = particle);
     }
     if let Some(request) = plotting::picked(session, particle, link) {
         apply(session, request, 0);

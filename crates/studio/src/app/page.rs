@@ -12,8 +12,7 @@ use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::platform::web::WindowAttributesExtWebSys;
 use winit::window::{Window, WindowAttributes};
 
-use super::adapter;
-use super::graphics::Graphics;
+use super::graphics::{Graphics, open_adapter};
 use super::screen::Screen;
 use crate::session::{Readings, Session};
 
@@ -81,7 +80,7 @@ impl Platform {
             self.opening = true;
             let display = screen.display.clone();
             wasm_bindgen_futures::spawn_local(async move {
-                send(Event::Opened(adapter::open(window, display).await));
+                send(Event::Opened(open_adapter(window, display).await));
             });
         }
         None
@@ -134,15 +133,10 @@ impl Platform {
 
 impl Films {
     /// Shows a message: a page makes no films.
-    pub fn record(&mut self, session: &mut Session, _: Option<&Graphics>) {
+    pub fn record(&mut self, session: &mut Session, _: Option<&Graphics>, _: bool) {
         session
             .readings
             .say("Only the program makes films: key y copies the command line for it.");
-    }
-
-    /// Shows the message of [`Self::record`].
-    pub fn record_last(&mut self, session: &mut Session, graphics: Option<&Graphics>) {
-        self.record(session, graphics);
     }
 
     /// Saves the frame that was just drawn, if that was requested. Returns false: no further frame

@@ -1,103 +1,93 @@
-//! The mouse pointer: its position, what is under it, and whether a button clicks or drags.
+//! The state of the mouse: its pointer, its buttons and its drag.
 
-use a3_media::show::Target;
+use egui::CursorIcon;
 use web_time::{Duration, Instant};
+use winit::event::MouseButton;
 
-use super::pick::{self, Grip};
-use super::screen::Screen;
-use crate::hud::layout;
-use crate::session::Session;
+use super::pick::Grip;
 
-/// Distance from the pointer within which a particle is picked (points).
-const PICK_DISTANCE: f32 = 18.0;
 /// Longest time between the two presses of a double click.
 const MAX_DOUBLE_CLICK_TIME: Duration = Duration::from_millis(400);
+/// Time after which a finger that has not moved pins.
+const LONG_PRESS: Duration = Duration::from_millis(550);
 
-/// The pointer.
-pub struct Pointer {
-    /// Position (px from the left and from the top of the window).
+/// A drag: the effect of a pressed button while the pointer moves.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Drag {
+    /// No action.
+    None,
+    /// Pull a particle or push an obstacle.
+    Pull(Grip),
+    /// Turn the camera.
+    Orbit,
+    /// Move the camera.
+    Pan,
+    /// Move an end of the ruler.
+    Rule,
+    /// Edit the scene by a click, or join a particle to another one by a drag.
+    Tool(Option<usize>),
+    /// Pin or free the particles in a box between the corner `from` (px) and the pointer.
+    Select { from: [f32; 2], pinned: bool },
+}
+
+/// The mouse.
+pub struct Mouse {
+    /// Position of the pointer (px from the left and from the top of the window).
     pub position: [f32; 2],
     /// Whether the pointer is in the window.
     pub inside: bool,
-    /// Position when the button was pressed (px).
+    /// The present drag.
+    pub drag: Drag,
+    /// The pane in which the button was pressed, at a position (px) and a time.
+    pub pane: usize,
     pressed_at: [f32; 2],
-    /// Time when the button was pressed.
     pressed: Instant,
     /// Whether the pointer has stayed near that position, as in a click.
-    still: bool,
+    pub still: bool,
+    /// The pressed button: the first one, if there are several.
+    pub button: Option<MouseButton>,
+    /// The shape of the pointer over the picture.
+    pub cursor: CursorIcon,
 }
 
-impl Pointer {
-    /// Creates a pointer outside the window.
+impl Mouse {
+    /// Creates a mouse outside the window, with no button pressed.
     pub fn new() -> Self {
         Self {
             position: [0.0; 2],
             inside: false,
+            drag: Drag::None,
+            pane: 0,
             pressed_at: [f32::INFINITY; 2],
             pressed: Instant::now(),
             still: false,
+            button: None,
+            cursor: CursorIcon::Default,
         }
     }
 
     /// Notes that a button was pressed, and returns whether this is a double click.
-    pub fn press(&mut self) -> bool {
+    pub fn begin_press(&mut self) -> bool {
         let double = self.still && self.pressed.elapsed() < MAX_DOUBLE_CLICK_TIME;
         (self.pressed_at, self.pressed, self.still) = (self.position, Instant::now(), true);
         double
     }
 
-    /// Makes the click a drag if `position` is farther (px) than `most` from where the button was
-    /// pressed.
-    pub fn update_click(&mut self, position: [f32; 2], most: f32) {
+    /// Returns the distance of a position from that where the button was pressed (px).
+    pub fn dragged(&self, position: [f32; 2]) -> f32 {
         let [x, y] = [0, 1].map(|k| position[k] - self.pressed_at[k]);
-        self.still &= x.hypot(y) <= most;
+        x.hypot(y)
     }
 
-    /// Returns when the button was pressed.
-    pub fn pressed(&self) -> Instant {
-        self.pressed
+    /// Returns when a finger that has not moved since it came down has pressed for long, and pins.
+    pub fn long_press_at(&self) -> Option<Instant> {
+        let is_still = matches!(self.drag, Drag::Pull(_) | Drag::Orbit) && self.still;
+        is_still.then(|| self.pressed + LONG_PRESS)
     }
 
-    /// Returns whether the pressed button has not dragged so far.
-    pub fn is_click(&self) -> bool {
-        self.still
-    }
-
-    /// Returns the length of the drag of the pressed button (px).
-    pub fn dragged(&self) -> f32 {
-        let [x, y] = [0, 1].map(|k| self.position[k] - self.pressed_at[k]);
-        if self.still { 0.0 } else { x.hypot(y) }
-    }
-
-    /// Returns the pane under the pointer, or else the pane that it was over last.
-    pub fn pane(&self, session: &Session, screen: &Screen) -> usize {
-        let last = session.panel.pane.min(session.runs.panes.len() - 1);
-        screen.pane_at(session, self.position).unwrap_or(last)
-    }
-
-    /// Returns the particle or obstacle under the pointer in a pane; `None` in a diverged run.
-    pub fn hit(&self, session: &Session, screen: &Screen, pane: usize) -> Option<(Target, Grip)> {
-        let (tile, pane) = (screen.tile(session, pane), &session.runs.panes[pane]);
-        let reach = PICK_DISTANCE * screen.scale() / tile.height as f32;
-        let place = tile.place(self.position);
-        let run = Some(&pane.simulation).filter(|_| pane.alive())?;
-        pick::pick(run, &session.view.camera, place, tile.aspect(), reach)
-    }
-
-    /// Returns whether the position is in the picture, in a window of `size` (px) at `scale` pixels
-    /// per point.
-    pub fn is_in_picture(&self, session: &Session, size: (u32, u32), scale: f32) -> bool {
-        let ([x, y], free) = (self.position, layout::picture_size(session, size, scale));
-        (0.0..free.0 as f32).contains(&x) && (0.0..free.1 as f32).contains(&y)
-    }
-
-    /// Returns whether the pointer is over the picture, where presses act on the scene.
-    pub fn is_over_picture(&self, session: &Session, screen: &Screen) -> bool {
-        let Some(graphics) = &screen.graphics else {
-            return false;
-        };
-        let inside = self.is_in_picture(session, graphics.size(), graphics.scale());
-        let is_free = session.list.is_none() && !session.readings.help;
-        inside && self.inside && is_free && !graphics.covers(self.position)
+    /// Ends the drag without an effect on the session.
+    pub fn abort(&mut self) {
+        // Another session may have fewer panes.
+        (self.drag, self.button, self.pane) = (Drag::None, None, 0);
     }
 }

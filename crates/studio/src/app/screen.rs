@@ -59,27 +59,18 @@ impl Screen {
     /// presenting waits for the rest, if it waits at all. `limit` is the largest frame rate (1/s),
     /// 0 for none.
     pub fn frame_time(&self, limit: u32) -> Duration {
-        let monitor = self
-            .window
-            .as_ref()
-            .and_then(|window| window.current_monitor());
-        let rate = monitor
-            .and_then(|monitor| monitor.refresh_rate_millihertz())
-            .unwrap_or(60_000);
-        let own = Duration::from_secs_f64(0.9e3 / f64::from(rate.clamp(30_000, 500_000)));
-        match limit {
-            0 => own,
-            limit => own.max(Duration::from_secs(1) / limit),
-        }
+        let monitor = self.window.as_ref().and_then(|it| it.current_monitor());
+        let rate = monitor.and_then(|it| it.refresh_rate_millihertz());
+        let rate = rate.unwrap_or(60_000).clamp(30_000, 500_000);
+        let own = Duration::from_secs_f64(0.9e3 / f64::from(rate));
+        let least = Duration::from_secs(1).checked_div(limit);
+        own.max(least.unwrap_or_default())
     }
 
     /// Returns the part of the window that pane k fills.
     pub fn tile(&self, session: &Session, k: usize) -> Tile {
-        let tiles = self
-            .graphics
-            .as_ref()
-            .map(|graphics| graphics.tiles(session));
-        tiles.map_or(Tile::whole((1, 1)), |tiles| tiles[k])
+        let graphics = self.graphics.as_ref();
+        graphics.map_or(Tile::whole((1, 1)), |it| it.tiles(session)[k])
     }
 
     /// Returns the pane at a position (px), if there is one.
@@ -97,11 +88,8 @@ impl Screen {
     pub fn scale_interface(&mut self, by: isize) -> String {
         let now = SCALES.iter().position(|scale| *scale >= self.zoom);
         let next = now.unwrap_or(0).saturating_add_signed(by);
-        self.zoom = if by == 0 {
-            1.0
-        } else {
-            SCALES[next.min(SCALES.len() - 1)]
-        };
+        let scaled = SCALES[next.min(SCALES.len() - 1)];
+        self.zoom = if by == 0 { 1.0 } else { scaled };
         if let Some(graphics) = &mut self.graphics {
             graphics.set_zoom(self.zoom);
         }

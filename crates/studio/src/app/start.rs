@@ -81,7 +81,7 @@ fn prepare(session: &mut Session, opening: &Opening, settings: Option<&Settings>
         }
         session.pulled = settings.pulled;
         if settings.dark && !opening.light {
-            looks::set_dark(&mut session.runs.panes, true);
+            looks::each(&mut session.runs.panes, |show| show.dark = true);
         }
         session.panel.film = settings.film;
         session.panel.frame_limit = settings.frame_limit;

@@ -1,4 +1,5 @@
-//! The state of the window: its session, its screen and its mouse. When it closes, its settings
+//! The window: its session, its screen and its mouse, the actions that need them, and its frames:
+//! advancing and drawing the session, and scheduling the next frame. When it closes, its settings
 //! are saved.
 
 use std::path::PathBuf;
@@ -7,26 +8,31 @@ use a3_files::failure::Failure;
 use a3_files::output;
 use a3_files::terminal;
 use a3_render::GpuError;
-use web_time::Instant;
+use web_time::{Duration, Instant};
 use winit::event::KeyEvent;
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
 use winit::keyboard::{Key, ModifiersState, NamedKey};
 
-use super::graphics::Graphics;
-use super::mouse::Mouse;
+use super::graphics::{FrameOutcome, Graphics};
 use super::platform::Platform;
+use super::pointer::Mouse;
 use super::screen::Screen;
 use super::status::Status;
 use super::touch::Fingers;
-use super::{keyboard, platform, tool};
+use super::{keyboard, platform};
 use crate::hud::{self, plotting};
 use crate::session::{Action, RunAction, Session, TextKey, WindowAction};
-use crate::session::{action_beside, apply, begin_plots, is_typing, panel};
+use crate::session::{action_beside, apply, is_typing, panel};
 use crate::settings::Settings;
 use crate::{command_line, keep};
 
 /// The action that closes the window.
 const CLOSE: Action = Action::Window(WindowAction::Close);
+
+/// Delay after which a skipped frame is drawn again.
+const RETRY_DELAY: Duration = Duration::from_millis(50);
+/// Delay after which a frame shows new measurements, if nothing else moves.
+const MEASURING_DELAY: Duration = Duration::from_millis(100);
 
 /// The window application.
 pub struct App {
@@ -108,7 +114,7 @@ impl App {
         if let (Some(_), Some(graphics)) = (&self.status, &self.screen.graphics)
             && event.logical_key == Key::Named(NamedKey::F12)
         {
-            graphics.lose_device();
+            graphics.gpu.device.destroy();
             self.screen.redraw();
         }
         self.screen.redraw();
@@ -182,7 +188,7 @@ impl App {
 
     /// Performs an action.
     pub fn act(&mut self, event_loop: &ActiveEventLoop, action: Action) {
-        let pane = self.mouse.pointer.pane(&self.session, &self.screen);
+        let pane = self.pane();
         if let Action::Window(action) = action {
             self.act_in_window(event_loop, action, pane);
         } else {
@@ -200,75 +206,50 @@ impl App {
     /// Performs an action that needs the window. The pointer is over `pane`.
     fn act_in_window(&mut self, event_loop: &ActiveEventLoop, action: WindowAction, pane: usize) {
         let (session, graphics) = (&mut self.session, self.screen.graphics.as_ref());
-        let message = match action {
-            WindowAction::Quit if std::mem::take(&mut session.readings.help) => None,
-            WindowAction::Quit if std::mem::take(&mut session.panel.editor.open) => None,
-            WindowAction::Quit if session.panel.close(RunAction::Measure) => None,
-            WindowAction::Quit if session.panel.plotting.ruler.take().is_some() => None,
-            WindowAction::Quit if session.panel.close(RunAction::Plots) => None,
-            WindowAction::Quit if platform::CAN_QUIT => {
-                session.readings.asks_to_quit = true;
-                None
-            }
-            WindowAction::Quit => {
-                self.remember();
-                Some("The browser closes the page.".into())
-            }
-            WindowAction::Close => {
-                event_loop.exit();
-                None
-            }
-            WindowAction::Stay => {
-                session.readings.asks_to_quit = false;
-                None
-            }
-            WindowAction::Picture => Some(self.platform.save_picture(session, graphics)),
-            WindowAction::FullScreen => {
-                self.screen.toggle_full_screen();
-                None
+        let said = match action {
+            WindowAction::Quit => return self.quit(),
+            WindowAction::Close => return event_loop.exit(),
+            WindowAction::Stay => return session.readings.asks_to_quit = false,
+            WindowAction::FullScreen => return self.screen.toggle_full_screen(),
+            WindowAction::Throw => return self.throw(pane),
+            WindowAction::Record | WindowAction::FilmLast => {
+                let past = action == WindowAction::FilmLast;
+                return self.platform.films.record(session, graphics, past);
             }
             WindowAction::Undo | WindowAction::Redo => {
                 let again = action == WindowAction::Redo || self.modifiers.shift_key();
-                panel::undo(session, again);
-                None
+                return panel::undo(session, again);
             }
-            WindowAction::Throw => {
-                let heavy = self.modifiers.shift_key();
-                tool::throw(&self.mouse.pointer, heavy, session, &self.screen, pane);
-                None
-            }
+            WindowAction::Picture => self.platform.save_picture(session, graphics),
             WindowAction::Follow => {
-                let hit = self.mouse.pointer.hit(session, &self.screen, pane);
-                let particle = hit.and_then(|(target, _)| target.particle());
-                let panes = &session.runs.panes;
-                Some(session.view.follow(panes, pane, particle))
+                let particle = self.particle(pane);
+                let session = &mut self.session;
+                session.view.follow(&session.runs.panes, pane, particle)
             }
             WindowAction::WritePlots if session.shows(RunAction::Plots) => {
                 let written = plotting::write_files(session);
-                Some(written.unwrap_or_else(|failure| failure.to_string()))
+                written.unwrap_or_else(|failure| failure.to_string())
             }
-            WindowAction::WritePlots => Some(said("Wrote", write_plots(session))),
-            WindowAction::WritePlot(file) => {
-                Some(said("Wrote", plotting::write_one(session, file)))
+            WindowAction::WritePlots => {
+                let (panes, scene) = (&session.runs.panes, session.runs.first().scene());
+                let table = hud::csv(panes).map_err(Failure::run);
+                let name = &scene.name;
+                said(
+                    "Wrote",
+                    table.and_then(|it| output::write_new("".as_ref(), name, "csv", &it)),
+                )
             }
-            WindowAction::Record => {
-                self.platform.films.record(session, graphics);
-                None
-            }
-            WindowAction::FilmLast => {
-                self.platform.films.record_last(session, graphics);
-                None
-            }
-            WindowAction::CommandLine => Some(match command_line::of(session, pane) {
+            WindowAction::WritePlot(file) => said("Wrote", plotting::write_one(session, file)),
+            WindowAction::CommandLine => match command_line::of(session, pane) {
                 Ok(line) => self.platform.copy(&line),
                 Err(failure) => failure.to_string(),
-            }),
+            },
             WindowAction::SaveRun => {
                 let saved = keep::save(session, pane);
                 if let Ok(path) = &saved {
                     session.scenes.checkpoint = Some(path.clone());
                 }
-                Some(said("Saved", saved))
+                said("Saved", saved)
             }
             WindowAction::LoadRun => {
                 let loaded = match session.scenes.checkpoint.clone() {
@@ -279,27 +260,140 @@ impl App {
                     }
                 };
                 session.readings.say(loaded);
-                self.scene_changed();
-                None
+                return self.scene_changed();
             }
         };
-        if let Some(message) = message {
-            self.session.readings.say(message);
+        self.session.readings.say(said);
+    }
+
+    /// Closes what is open: the help, the tools, a pane or the ruler. If nothing is, asks whether
+    /// to quit.
+    fn quit(&mut self) {
+        let (readings, panel) = (&mut self.session.readings, &mut self.session.panel);
+        let has_closed = std::mem::take(&mut readings.help)
+            || std::mem::take(&mut panel.editor.open)
+            || panel.close(RunAction::Measure)
+            || panel.plotting.ruler.take().is_some()
+            || panel.close(RunAction::Plots);
+        if !has_closed && platform::CAN_QUIT {
+            readings.asks_to_quit = true;
+        } else if !has_closed {
+            self.remember();
+            let why = "The browser closes the page.";
+            self.session.readings.say(why);
+        }
+    }
+
+    /// Advances the session by the time since the last frame, draws it, and schedules the next
+    /// frame.
+    pub fn frame(&mut self, event_loop: &ActiveEventLoop) {
+        if self.platform.files_changed() && self.session.reload() {
+            self.last_tick = Instant::now();
+            self.scene_changed();
+        }
+        let now = Instant::now();
+        let real = now.duration_since(self.last_tick).as_secs_f64();
+        self.last_tick = now;
+        let session = &mut self.session;
+        if let Some(graphics) = &self.screen.graphics {
+            session.view.camera.set_focus(graphics.focus(session));
+        }
+        let long_press = self.mouse.long_press_at();
+        let mut long_press = long_press.filter(|_| self.fingers.is_pressing());
+        if long_press.take_if(|at| *at <= now).is_some() {
+            self.fingers.end_press();
+            self.long_press();
+        }
+        self.pull();
+        let session = &mut self.session;
+        session.tick(self.platform.films.time_to_advance(session, real));
+        session.view.track_followed(&session.runs.panes);
+        session.read_state();
+        session.measuring.update();
+        self.update_hover();
+        let session = &mut self.session;
+        let message_ends = session.readings.message_ends();
+        let Some(graphics) = &mut self.screen.graphics else {
+            return;
+        };
+        let begun = Instant::now();
+        match graphics.frame(session, self.mouse.cursor) {
+            Ok(FrameOutcome::Drawn(again, action)) => {
+                session.count_frame(begun.elapsed());
+                let filmed = self.platform.films.draw(session, Some(graphics));
+                let at_once = (filmed || action.is_some()).then_some(Duration::ZERO);
+                let again = at_once.or(again);
+                if let Some(action) = action {
+                    let acts = matches!(action, Action::Run(_) | Action::Window(_));
+                    if acts && action != RunAction::Help.into() {
+                        session.readings.help = false;
+                    }
+                    self.act(event_loop, action);
+                }
+                if let Some(status) = &mut self.status {
+                    status.frames += 1;
+                }
+                let frame_time = self.screen.frame_time(self.session.panel.frame_limit);
+                let session = &self.session;
+                let measuring = session.measuring.progress().is_some();
+                let measured = measuring.then_some(now + MEASURING_DELAY);
+                let next = if self.session.animated() {
+                    Some(now + frame_time)
+                } else {
+                    let again = again.map(|delay| now + delay.max(frame_time));
+                    let checked = self.platform.next_check();
+                    let all = [again, message_ends, measured, long_press, checked];
+                    all.into_iter().flatten().min()
+                };
+                if let Some(next) = next {
+                    self.screen.wait_until(event_loop, next);
+                }
+            }
+            Ok(FrameOutcome::Skipped) => self.screen.wait_until(event_loop, now + RETRY_DELAY),
+            Err(GpuError::Lost) => self.open_graphics(event_loop),
+            Err(why) => self.fail(event_loop, why),
+        }
+        self.say_status();
+    }
+
+    /// Writes a status line, if they are enabled.
+    pub fn say_status(&mut self) {
+        if let Some(status) = &mut self.status {
+            status.say(&self.session, &self.screen, self.mouse.cursor);
         }
     }
 
     /// Ends drags and live films, and shows another scene.
     pub fn scene_changed(&mut self) {
         self.mouse.abort();
-        begin_plots(&mut self.session);
+        self.session.begin_plots();
         self.platform.films.finish_live(&mut self.session.readings);
         self.screen.set_scene(&self.session);
     }
 
-    /// Saves the settings for the next window, unless that is disabled.
+    /// Saves the settings for the next window if they have changed, unless that is disabled. Warns
+    /// on the terminal if that fails.
     pub fn remember(&self) {
-        if let Some(before) = &self.settings {
-            remember(before, &self.session, &self.screen);
+        let (Some(before), session) = (&self.settings, &self.session) else {
+            return;
+        };
+        let mut now = Settings {
+            interface_scale: self.screen.zoom,
+            full_screen: self.screen.is_full_screen(),
+            dark: session.panel.dark.unwrap_or(before.dark),
+            panel: session.panel.has(RunAction::Panel),
+            pulled: session.pulled,
+            frame_limit: session.panel.frame_limit,
+            film: session.panel.film,
+            film_seconds: session.panel.film_seconds,
+            recent: before.recent.clone(),
+        };
+        now.remember(session.scenes.files());
+        if now == *before {
+            return;
+        }
+        if let Err(why) = now.write() {
+            terminal::warn(&why.to_string());
         }
     }
 }
@@ -309,35 +403,5 @@ fn said(done: &str, file: Result<PathBuf, Failure>) -> String {
     match file {
         Ok(path) => format!("{done} {}.", path.display()),
         Err(failure) => failure.to_string(),
-    }
-}
-
-/// Writes the samples of all panes under the first free name, and returns the path. Fails if the
-/// file cannot be written.
-fn write_plots(session: &Session) -> Result<PathBuf, Failure> {
-    let table = hud::csv(&session.runs.panes).map_err(Failure::run)?;
-    let scene = &session.runs.first().scene().name;
-    output::write_new("".as_ref(), scene, "csv", &table)
-}
-
-/// Writes the present settings, if they have changed. Warns on the terminal if that fails.
-pub fn remember(before: &Settings, session: &Session, screen: &Screen) {
-    let mut now = Settings {
-        interface_scale: screen.zoom,
-        full_screen: screen.is_full_screen(),
-        dark: session.panel.dark.unwrap_or(before.dark),
-        panel: session.panel.has(RunAction::Panel),
-        pulled: session.pulled,
-        frame_limit: session.panel.frame_limit,
-        film: session.panel.film,
-        film_seconds: session.panel.film_seconds,
-        recent: before.recent.clone(),
-    };
-    now.remember(session.scenes.files());
-    if now == *before {
-        return;
-    }
-    if let Err(why) = now.write() {
-        terminal::warn(&why.to_string());
     }
 }

@@ -34,16 +34,14 @@ impl Status {
         // Position of the grabbed particle in the window (px).
         let place = |pane: &Pane, tile: Tile| {
             let p = pane.simulation.position(pane.simulation.grabbed()?);
-            let point = [p.x as f32, p.y as f32, p.z as f32];
+            let point = p.map(|x| x as f32).into();
             let ([x, y], _) = session.view.camera.project(point, tile.aspect())?;
             let (x, y) = (x * tile.width as f32, y * tile.height as f32);
             Some(format!("{:.0},{:.0}", tile.x as f32 + x, tile.y as f32 + y))
         };
-        let hands: Vec<_> = panes
-            .iter()
-            .zip(graphics.tiles(session))
-            .map(|(pane, tile)| place(pane, tile).unwrap_or("-".into()))
-            .collect();
+        let hands = panes.iter().zip(graphics.tiles(session));
+        let hands = hands.map(|(pane, tile)| place(pane, tile).unwrap_or("-".into()));
+        let hands: Vec<_> = hands.collect();
         let each = |value: &dyn Fn(&Pane) -> String| {
             let values: Vec<_> = panes.iter().map(value).collect();
             values.join(",")
@@ -103,11 +101,11 @@ impl Status {
             run.steps(),
             self.frames,
             hands[0],
-            readings.rate,
-            readings.factor,
-            readings.simulating,
-            readings.drawing,
-            graphics.adapter(),
+            readings.rates.rate,
+            readings.rates.factor,
+            readings.rates.simulating,
+            readings.rates.drawing,
+            graphics.gpu.name(),
             panes.len(),
             hands.join(";"),
             each(&|pane| pane.simulation.method().name.into()),
@@ -123,9 +121,9 @@ impl Status {
     }
 }
 
-/// Returns the number of a particle, or `-`.
-fn number(particle: Option<usize>) -> String {
-    particle.map_or("-".into(), |i| i.to_string())
+/// Returns a number, or `-`.
+fn number(number: Option<usize>) -> String {
+    number.map_or("-".into(), |i| i.to_string())
 }
 
 /// Returns the lesson and the step that are shown, as in `1.2`, and `list` for the list of lessons.
@@ -140,10 +138,6 @@ fn lesson(session: &Session) -> String {
 
 /// Returns the number of things that are plotted, if the plots are open.
 fn plots(session: &Session) -> String {
-    let count = session.runs.panes[0].traces.len();
-    if session.panel.has(RunAction::Plots) {
-        count.to_string()
-    } else {
-        "-".into()
-    }
+    let is_open = session.panel.has(RunAction::Plots);
+    number(is_open.then(|| session.runs.panes[0].traces.len()))
 }

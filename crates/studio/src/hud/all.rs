@@ -6,7 +6,7 @@ use egui::{Context, TextureId};
 
 use super::style::MARGIN;
 use super::{bar, edit, layout, list, marks, offers, plotting, text};
-use crate::session::{Action, Session};
+use crate::session::Session;
 
 /// Shorter side of a picture that lists cover (points).
 const LIST_COVERS: f32 = 500.0;
@@ -18,36 +18,32 @@ const WIDEST: f32 = 500.0;
 /// (points).
 const TOOLS_COVER: [f32; 2] = [260.0, 560.0];
 
-/// Draws text, panel, bar and the open list, with `pictures` of scenes by their names. Returns the
-/// action of the mouse.
-pub fn show_all(
-    ctx: &Context,
-    session: &Session,
-    pictures: &HashMap<String, TextureId>,
-) -> Option<Action> {
+/// Draws text, panel, bar and the open list, with `pictures` of scenes by their names. What the
+/// mouse asks for is [`asked`](super::asked) then.
+pub fn show_all(ctx: &Context, session: &Session, pictures: &HashMap<String, TextureId>) {
     let window = ctx.viewport_rect().size();
     // Explanations are beside a pane, over the picture.
     let beside = ctx.content_rect().width() - 2.0 * MARGIN;
     ctx.global_style_mut(|style| style.spacing.tooltip_width = beside.clamp(80.0, WIDEST));
-    let on_picture = if layout::is_covered(session, window.into()) {
-        None
-    } else {
-        over_picture(ctx, session)
-    };
-    let beside = layout::beside(session).and_then(|pane| pane.show(ctx, session));
-    let on_bar = bar::show(ctx, session);
-    let asks = session.readings.asks_to_quit;
-    let on_question = asks.then(|| offers::ask_to_quit(ctx)).flatten();
-    let on_list = list::show(ctx, session, pictures);
-    on_question.or(on_list).or(on_bar).or(beside).or(on_picture)
+    if !layout::is_covered(session, window.into()) {
+        over_picture(ctx, session);
+    }
+    if let Some(pane) = layout::beside(session) {
+        pane.show(ctx, session);
+    }
+    bar::show(ctx, session);
+    if session.readings.asks_to_quit {
+        offers::ask_to_quit(ctx);
+    }
+    list::show(ctx, session, pictures);
 }
 
-/// Draws what lies over the picture, and returns the action of the mouse.
-fn over_picture(ctx: &Context, session: &Session) -> Option<Action> {
+/// Draws what lies over the picture.
+fn over_picture(ctx: &Context, session: &Session) {
     let window = ctx.content_rect().size();
     // In a small window, the open list leaves no room for text beside it.
     if session.list.is_some() && window.min_elem() < LIST_COVERS {
-        return None;
+        return;
     }
     // In a low window, the tools leave no room for text above them, nor for that of lower panes.
     let several = session.runs.panes.len() > 2;
@@ -56,13 +52,12 @@ fn over_picture(ctx: &Context, session: &Session) -> Option<Action> {
         return edit::show(ctx, session);
     }
     marks::hint(ctx, session);
-    let on_text = text::show_text(ctx, &session.runs.panes, &session.readings);
-    let on_offer = plotting::offer(ctx, session);
-    let on_offer = offers::offer(ctx, session).or(on_offer);
+    text::show_text(ctx, &session.runs.panes, &session.readings);
+    plotting::offer(ctx, session);
+    offers::offer(ctx, session);
     marks::ruler(ctx, session);
-    let on_panes = offers::on_panes(ctx, session);
-    let on_tools = edit::show(ctx, session);
-    on_panes.or(on_offer).or(on_tools).or(on_text)
+    offers::on_panes(ctx, session);
+    edit::show(ctx, session);
 }
 
 #[cfg(test)]
@@ -155,7 +150,7 @@ mod tests {
         for events in [moved, None, None, None] {
             let events = events.into_iter().collect();
             window.frame(taken, events, |ctx| {
-                show_all(ctx, &session, &HashMap::new())
+                show_all(ctx, &session, &HashMap::new());
             });
         }
         let mut words = window.written().into_iter();

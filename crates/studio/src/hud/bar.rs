@@ -1,13 +1,11 @@
 //! The bar below the picture: what a user does most, as buttons, and the timeline.
 
-use egui::{
-    Align2, Color32, Context, CursorIcon, FontId, Id, Rect, Response, Sense, Stroke, Ui, pos2, vec2,
-};
+use egui::{Align2, Color32, Context, CursorIcon, FontId, Id, Rect, Sense, Stroke, Ui, pos2, vec2};
 
 use super::dock::docked;
 use super::layout;
 use super::style::{ALARM, FAINT, INK, PAPER, TEXT};
-use super::widgets::{CHOSEN, MIDDLE, write};
+use super::widgets::{Asks, CHOSEN, MIDDLE, ask, write};
 use super::words::digits;
 use crate::session::{
     Action, IS_PAGE, PanelRequest, RunAction, Session, TimelinePosition, WindowAction, is_here,
@@ -60,8 +58,8 @@ impl Button {
         }
     }
 
-    /// Draws the button in a rectangle, and returns its response.
-    fn show(&self, ui: &Ui, rect: Rect) -> Response {
+    /// Draws the button in a rectangle.
+    fn show(&self, ui: &Ui, rect: Rect) {
         let response = ui.interact(rect, Id::unique(("bar", &self.about)), Sense::click());
         let painter = ui.painter();
         if response.hovered() {
@@ -69,39 +67,35 @@ impl Button {
         }
         let (at, size) = (rect.center(), self.size());
         write(painter, at, MIDDLE, &self.face, size, self.colour);
-        response.on_hover_text(&self.about)
+        response.on_hover_text(&self.about).asks(self.action);
     }
 }
 
-/// Draws the bar, if the window has room for it, and returns the request of the mouse.
-pub fn show(ctx: &Context, session: &Session) -> Option<Action> {
+/// Draws the bar, if the window has room for it.
+pub fn show(ctx: &Context, session: &Session) {
     let (window, picture) = (ctx.viewport_rect(), ctx.content_rect());
     let height = layout::bar_height(session, [window.width(), window.height()]);
     if height == 0.0 {
-        return None;
+        return;
     }
     let right = if layout::is_bar_whole(session, window.width()) {
         window.right()
     } else {
         picture.right()
     };
-    let rect = Rect::from_min_max(
-        pos2(picture.left(), window.bottom() - height),
-        pos2(right, window.bottom()),
-    );
+    let left = picture.left();
+    let rect = window.with_min_y(window.bottom() - height);
+    let rect = rect.with_min_x(left).with_max_x(right);
     docked(ctx, "controls", rect, |ui| {
-        contents(ui, rect.shrink2(vec2(8.0, 0.0)), session)
-    })
+        contents(ui, rect.shrink2(vec2(8.0, 0.0)), session);
+    });
 }
 
 /// Draws the buttons at both ends of a rectangle, and the timeline between them.
-fn contents(ui: &Ui, rect: Rect, session: &Session) -> Option<Action> {
-    let mut request = None;
-    let mut place = |button: &Button, left: f32, width: f32| {
-        let room = Rect::from_min_max(pos2(left, rect.top()), pos2(left + width, rect.bottom()));
-        if button.show(ui, room).clicked() {
-            request = Some(button.action);
-        }
+fn contents(ui: &Ui, rect: Rect, session: &Session) {
+    let place = |button: &Button, left: f32, width: f32| {
+        let room = Rect::from_x_y_ranges(left..=left + width, rect.y_range());
+        button.show(ui, room);
     };
     let (mut left, mut right) = (rect.left(), rect.right());
     let touch = session.readings.touch;
@@ -130,13 +124,10 @@ fn contents(ui: &Ui, rect: Rect, session: &Session) -> Option<Action> {
         right -= width;
         place(button, right, width);
     }
-    let room = Rect::from_min_max(
-        pos2(left + 14.0, rect.top()),
-        pos2(right - 14.0, rect.bottom()),
-    );
-    let drawn = session.readings.timeline.filter(|_| room.width() > 60.0);
-    let moved = drawn.and_then(|position| timeline(ui, room, &position));
-    moved.map(Action::Panel).or(request)
+    let room = Rect::from_x_y_ranges(left + 14.0..=right - 14.0, rect.y_range());
+    if let Some(position) = session.readings.timeline.filter(|_| room.width() > 60.0) {
+        timeline(ui, room, &position);
+    }
 }
 
 /// Returns the buttons for the run: reset, back, play or pause, and a step.
@@ -239,8 +230,8 @@ fn colour(session: &Session, action: Action) -> Color32 {
 }
 
 /// Draws the timeline in a room: a track with a thumb at the chosen moment, and a cross at the end
-/// if the run blew up there. Returns the request of the mouse.
-fn timeline(ui: &Ui, room: Rect, position: &TimelinePosition) -> Option<PanelRequest> {
+/// if the run blew up there.
+fn timeline(ui: &Ui, room: Rect, position: &TimelinePosition) {
     let (wide, id) = (room.expand2(vec2(8.0, 0.0)), Id::unique("timeline"));
     let response = ui.interact(wide, id, Sense::click_and_drag());
     if response.hovered() || response.dragged() {
@@ -279,9 +270,10 @@ fn timeline(ui: &Ui, room: Rect, position: &TimelinePosition) -> Option<PanelReq
         say(room.right(), Align2::RIGHT_TOP, words, color);
     }
     let held = response.dragged() || response.clicked();
-    let pointer = response.interact_pointer_pos().filter(|_| held)?;
-    let share = (pointer.x - room.left()) / room.width();
-    Some(PanelRequest::GoTo(share.clamp(0.0, 1.0)))
+    if let Some(pointer) = response.interact_pointer_pos().filter(|_| held) {
+        let share = (pointer.x - room.left()) / room.width();
+        ask(ui, PanelRequest::GoTo(share.clamp(0.0, 1.0)));
+    }
 }
 
 #[cfg(test)]
@@ -387,7 +379,7 @@ mod tests {
             let taken = layout::insets(&session, (1280, 720), 1.0);
             for _ in 0..4 {
                 window.frame(taken, vec![], |ctx| {
-                    show_all(ctx, &session, &HashMap::new())
+                    show_all(ctx, &session, &HashMap::new());
                 });
             }
             let at = pos2(1280.0 - taken[0] - 30.0, 700.0);

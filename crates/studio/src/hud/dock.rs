@@ -4,12 +4,12 @@
 use egui::{Area, Context, Id, Rect, Sense, Stroke, Ui, pos2, vec2};
 
 use super::style::{FAINT, TEXT};
-use super::widgets::{EDGE, LEFT, RIGHT, SHEET, cross, write};
-use crate::session::{Action, RunAction, Session};
+use super::widgets::{Asks, EDGE, LEFT, RIGHT, SHEET, cross, write};
+use crate::session::{RunAction, Session};
 
 /// Draws a sheet at an edge of the window, with lines where it meets the picture, and its contents
 /// on it.
-pub fn docked<R>(ctx: &Context, name: &str, rect: Rect, contents: impl FnOnce(&mut Ui) -> R) -> R {
+pub fn docked(ctx: &Context, name: &str, rect: Rect, contents: impl FnOnce(&mut Ui)) {
     let window = ctx.viewport_rect();
     Area::new(Id::unique(name))
         .fixed_pos(rect.min)
@@ -28,9 +28,8 @@ pub fn docked<R>(ctx: &Context, name: &str, rect: Rect, contents: impl FnOnce(&m
             if rect.top() > window.top() {
                 painter.hline(rect.x_range(), rect.top(), edge);
             }
-            contents(ui)
-        })
-        .inner
+            contents(ui);
+        });
 }
 
 /// A pane that opens beside the picture.
@@ -43,8 +42,8 @@ pub struct Pane {
     /// Distance of the contents from the edges, and of the middle of the title from the top
     /// (points).
     pub margins: [f32; 2],
-    /// Draws the contents in a room, and returns the action of the mouse.
-    pub contents: fn(&mut Ui, Rect, &Session) -> Option<Action>,
+    /// Draws the contents in a room.
+    pub contents: fn(&mut Ui, Rect, &Session),
     /// Smallest and largest width beside the picture (points), and its share of the window's width
     /// between them.
     pub width: (f32, f32, f32),
@@ -63,9 +62,8 @@ const MIN_PICTURE_WIDTH: f32 = 150.0;
 const MIN_KEY_WIDTH: f32 = 220.0;
 
 impl Pane {
-    /// Draws the pane: its heading with the button that closes it, and its contents. Returns the
-    /// action of the mouse.
-    pub fn show(&self, ctx: &Context, session: &Session) -> Option<Action> {
+    /// Draws the pane: its heading with the button that closes it, and its contents.
+    pub fn show(&self, ctx: &Context, session: &Session) {
         let rect = self.rect(ctx);
         docked(ctx, self.key, rect, |ui| {
             ui.set_clip_rect(rect);
@@ -73,16 +71,15 @@ impl Pane {
             let room = rect.shrink2(vec2(side, 0.0));
             let [left, right] = [room.left(), room.right() - 8.0];
             let [left, right] = [left, right].map(|x| pos2(x, room.top() + line));
-            let closed = cross(ui, right);
+            cross(ui, right).asks(self.action);
             let painter = ui.painter();
             if room.width() > MIN_KEY_WIDTH {
                 let at = right - vec2(16.0, 0.0);
                 write(painter, at, RIGHT, self.key, 12.5, FAINT);
             }
             write(painter, left, LEFT, self.title, 17.0, TEXT);
-            let closed = closed.then_some(self.action.into());
-            (self.contents)(ui, room, session).or(closed)
-        })
+            (self.contents)(ui, room, session);
+        });
     }
 
     /// Returns the width on the right and the height below the picture that the pane takes, in a
@@ -115,17 +112,14 @@ impl Pane {
         let (window, picture) = (ctx.viewport_rect(), ctx.content_rect());
         match self.taken([window.width(), window.height()]) {
             [0.0, 0.0] => picture,
-            [0.0, below] => Rect::from_min_max(
-                pos2(window.left(), picture.bottom()),
-                pos2(window.right(), picture.bottom() + below),
-            ),
+            [0.0, below] => {
+                let top = picture.bottom();
+                window.with_min_y(top).with_max_y(top + below)
+            }
             [right, _] => {
                 let is_above = self.is_narrow(window.width());
                 let bottom = if is_above { picture } else { window }.bottom();
-                Rect::from_min_max(
-                    pos2(window.right() - right, window.top()),
-                    pos2(window.right(), bottom),
-                )
+                window.with_min_x(window.right() - right).with_max_y(bottom)
             }
         }
     }

@@ -5,7 +5,7 @@ use egui::{Align2, Area, Context, CursorIcon, Id, ScrollArea, Sense, Ui, pos2, v
 
 use super::list::pressed_at;
 use super::style::{INK, MARGIN, TEXT, sheet, title};
-use super::widgets::{LEFT, write};
+use super::widgets::{Asks, LEFT, ask, write};
 use crate::session::{
     Action, Binding, FINGERS, GROUPS, Group, MOUSE, RunAction, WindowAction, is_here,
 };
@@ -17,11 +17,9 @@ const ROW_HEIGHT: f32 = 21.0;
 /// Widths of a key, of a gesture of the mouse, and of what follows (points).
 const WIDTHS: [f32; 3] = [58.0, 128.0, 190.0];
 
-/// Shows the help, for one pane or `several`, and returns the action of the mouse. In a small
-/// window it scrolls by the wheel.
-pub fn help(ctx: &Context, several: bool, touch: bool) -> Option<Action> {
+/// Shows the help, for one pane or `several`. In a small window it scrolls by the wheel.
+pub fn help(ctx: &Context, several: bool, touch: bool) {
     let window = ctx.content_rect().shrink(MARGIN);
-    let mut request = None;
     let area = Area::new(Id::unique("help"))
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .show(ctx, |ui| {
@@ -34,42 +32,37 @@ pub fn help(ctx: &Context, several: bool, touch: bool) -> Option<Action> {
                     .max_height(room.y.max(40.0))
                     .min_scrolled_height(room.y.max(40.0))
                     .show(ui, |ui| {
-                        let wide = window.width() > THREE_COLUMN_WIDTH;
-                        request = columns(ui, several, touch, wide);
+                        columns(ui, several, touch, window.width() > THREE_COLUMN_WIDTH);
                     });
             });
         });
     // A click beside the help closes it, except on the bar.
     let pressed = pressed_at(ctx).is_some_and(|at| ctx.content_rect().contains(at));
     if pressed && !area.response.contains_pointer() {
-        request = Some(RunAction::Help.into());
+        ask(ctx, RunAction::Help);
     }
-    request
 }
 
-/// Writes all groups in three columns, or below one another in a narrow window. Returns the request
-/// of the mouse.
-fn columns(ui: &mut Ui, several: bool, touch: bool, wide: bool) -> Option<Action> {
+/// Writes all groups in three columns, or below one another in a narrow window.
+fn columns(ui: &mut Ui, several: bool, touch: bool, wide: bool) {
     let [running, choose, change, show, look, measure, keep, window] = &GROUPS;
-    let mut request = None;
-    let mut column = |ui: &mut Ui, groups: &[&Group], mouse: bool, numbered: bool| {
+    let column = |ui: &mut Ui, groups: &[&Group], mouse: bool, numbered: bool| {
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             if mouse {
                 gestures(ui, touch);
             }
             for group in groups {
-                request = bindings(ui, group).or(request);
+                bindings(ui, group);
             }
             if numbered {
-                request = solvers(ui, several).or(request);
+                solvers(ui, several);
             }
         });
     };
     if !wide {
         let all: Vec<_> = GROUPS.iter().collect();
-        column(ui, &all, true, true);
-        return request;
+        return column(ui, &all, true, true);
     }
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 26.0;
@@ -77,7 +70,6 @@ fn columns(ui: &mut Ui, several: bool, touch: bool, wide: bool) -> Option<Action
         column(ui, &[running, look, measure, window], false, false);
         column(ui, &[keep], false, true);
     });
-    request
 }
 
 /// Writes a heading.
@@ -100,40 +92,30 @@ fn gestures(ui: &mut Ui, touch: bool) {
     }
 }
 
-/// Writes the keys of a purpose, and returns the action of the mouse.
-fn bindings(ui: &mut Ui, group: &Group) -> Option<Action> {
+/// Writes the keys of a purpose.
+fn bindings(ui: &mut Ui, group: &Group) {
     heading(ui, group.purpose);
-    let mut request = None;
     let here = group.bindings.iter().filter(|it| is_here(it.action));
     for Binding { keys, action, help } in here {
         // A click cannot point at a particle too.
         let clicked = Some(*action).filter(|it| *it != Action::Window(WindowAction::Follow));
-        request = row(ui, [&keys.join("  "), help], WIDTHS[0], clicked).or(request);
+        row(ui, [&keys.join("  "), help], WIDTHS[0], clicked);
     }
-    request
 }
 
-/// Writes the solvers that digits choose, and returns the action of the mouse.
-fn solvers(ui: &mut Ui, several: bool) -> Option<Action> {
-    heading(
-        ui,
-        if several {
-            "Solvers, under the pointer"
-        } else {
-            "Solvers"
-        },
-    );
-    let mut request = None;
+/// Writes the solvers that digits choose.
+fn solvers(ui: &mut Ui, several: bool) {
+    let under = if several { ", under the pointer" } else { "" };
+    heading(ui, &format!("Solvers{under}"));
     for (i, method) in integrators::METHODS.iter().enumerate().take(10) {
         let key = ((i + 1) % 10).to_string();
         let action = Action::Run(RunAction::Solver(i));
-        request = row(ui, [&key, method.title], WIDTHS[0], Some(action)).or(request);
+        row(ui, [&key, method.title], WIDTHS[0], Some(action));
     }
-    request
 }
 
-/// Writes a key and its effect, and returns its action if the row was clicked.
-fn row(ui: &mut Ui, words: [&str; 2], width: f32, action: Option<Action>) -> Option<Action> {
+/// Writes a key and its effect. A click asks for its action.
+fn row(ui: &mut Ui, words: [&str; 2], width: f32, action: Option<Action>) {
     let sense = if action.is_some() {
         Sense::click()
     } else {
@@ -152,7 +134,9 @@ fn row(ui: &mut Ui, words: [&str; 2], width: f32, action: Option<Action>) -> Opt
         let at = pos2(rect.left() + x, y);
         write(ui.painter(), at, LEFT, words, 13.0, colour);
     }
-    action.filter(|_| response.clicked())
+    if let Some(action) = action {
+        response.asks(action);
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Layout of the window: picture, panes and bars.
 
 use a3_render::Tile;
+use egui::{Context, Rect, pos2};
 
 use super::dock::Pane;
 use super::{lessons, measure, panel, plotting};
@@ -55,10 +56,9 @@ pub fn picture_size(session: &Session, size: (u32, u32), scale: f32) -> (u32, u3
     let [right, below] = beside(session).map_or([0.0; 2], |pane| pane.taken(window));
     let [right, below] =
         [right, below + bar_height(session, window)].map(|a| (a * scale).round() as u32);
-    (
-        size.0.saturating_sub(right).max(1),
-        size.1.saturating_sub(below).max(1),
-    )
+    let [width, height] =
+        [(size.0, right), (size.1, below)].map(|(a, b)| a.saturating_sub(b).max(1));
+    (width, height)
 }
 
 /// Returns the width on the right and the height below that are not available to text (points).
@@ -116,6 +116,19 @@ pub fn tiles(panes: usize, size: (u32, u32), scale: f32) -> Vec<Tile> {
             }
         })
         .collect()
+}
+
+/// Returns the parts of a window (px) for a number of panes, each with its place (points).
+pub fn tiles_in(ctx: &Context, panes: usize) -> Vec<(Tile, Rect)> {
+    let (size, scale) = (ctx.content_rect().size(), ctx.pixels_per_point());
+    let size = [size.x, size.y].map(|side| (side * scale).round() as u32);
+    let place = |tile: Tile| {
+        let corner = pos2(tile.x as f32, tile.y as f32) / scale;
+        let size = points(tile, scale).into();
+        (tile, Rect::from_min_size(corner, size))
+    };
+    let tiles = tiles(panes, size.into(), scale).into_iter();
+    tiles.map(place).collect()
 }
 
 /// Width and height of the readings of a single pane (points).

@@ -2,11 +2,10 @@
 
 use a3_media::show::{self, Show};
 use a3_render::ramp;
-use egui::{
-    Align2, Color32, FontId, Mesh, Pos2, Rect, Sense, Shape, Stroke, Ui, epaint::Vertex, vec2,
-};
+use egui::{Align2, Color32, Mesh, Pos2, Rect, Sense, Shape, Stroke, Ui, epaint::Vertex, vec2};
 
 use super::style::{FAINT, TEXT, invert_lightness};
+use super::widgets::write;
 use super::words::digits;
 
 /// Width and height of the colour bar (points).
@@ -25,33 +24,26 @@ pub fn legend(ui: &mut Ui, show: &Show) {
         let bar = Rect::from_min_size(rect.min, vec2(width, BAR_SIZE[1]));
         draw(ui, bar, show.dark);
         let scale = &colouring.scale;
-        let power = |end: f64| {
-            if end < 1e-3 {
-                format!("{end:.0e}")
-            } else {
-                format!("{end}")
-            }
+        let power = |end: f64| match end {
+            small if small < 1e-3 => format!("{small:.0e}"),
+            end => end.to_string(),
         };
         let (start, end, kind) = if scale.logarithmic {
-            let least = scale.end() / 10f64.powi(show::DECADES);
-            (
-                format!("\u{2264} {}", power(least)),
-                power(scale.end()),
-                ", log.",
-            )
+            let least = power(scale.end() / 10f64.powi(show::DECADES));
+            (format!("\u{2264} {least}"), power(scale.end()), ", log.")
         } else {
             ("0".into(), digits(scale.end()), "")
         };
         let fixed = if scale.fixed.is_some() { ", fixed" } else { "" };
-        let write = |at: Pos2, align, words: String| {
-            let font = FontId::proportional(12.5);
-            ui.painter().text(at, align, words, font, FAINT);
-        };
-        write(rect.left_bottom(), Align2::LEFT_BOTTOM, start);
         let name = format!("{}{kind}{fixed}", quantity.name());
-        write(rect.center_bottom(), Align2::CENTER_BOTTOM, name);
         let end = format!("{end}{}", quantity.unit());
-        write(rect.right_bottom(), Align2::RIGHT_BOTTOM, end);
+        for (at, align, words) in [
+            (rect.left_bottom(), Align2::LEFT_BOTTOM, start),
+            (rect.center_bottom(), Align2::CENTER_BOTTOM, name),
+            (rect.right_bottom(), Align2::RIGHT_BOTTOM, end),
+        ] {
+            write(ui.painter(), at, align, words, 12.5, FAINT);
+        }
     }
     if let Some(arrows) = field.arrows {
         let end = digits(field.scale.end());

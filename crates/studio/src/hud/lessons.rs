@@ -11,9 +11,10 @@ use egui::{
 use super::dock::Pane;
 use super::style::{self, FAINT, INK, SAFE, TEXT, WARNING};
 use super::widgets::{
-    CARD, CHOSEN, EDGE, HOVERED, LEFT, MIDDLE, RIGHT, TRACK, columns, due, keep_in_sight, write,
+    Asks, CARD, CHOSEN, EDGE, HOVERED, LEFT, MIDDLE, RIGHT, TRACK, columns, due, keep_in_sight,
+    write,
 };
-use crate::session::{Action, Given, LessonRequest, Lessons, RunAction, Session};
+use crate::session::{Given, LessonRequest, Lessons, RunAction, Session};
 
 /// Distance of the contents from the edges, and of the middle of the title from the top (points).
 const MARGINS: [f32; 2] = [16.0, 21.0];
@@ -24,7 +25,7 @@ pub const PANE: Pane = Pane {
     action: RunAction::Lessons,
     key: "F1",
     margins: MARGINS,
-    contents: |ui, room, session| show(ui, room, session).map(Action::Learn),
+    contents: show,
     width: (330.0, 470.0, 0.3),
     min_width_beside: 600.0,
     share_below: 0.47,
@@ -41,20 +42,19 @@ const LOW: f32 = 300.0;
 const BUTTONS_HEIGHTS: [f32; 2] = [48.0, 58.0];
 
 /// Draws the lessons: a heading, and what scrolls below it.
-fn show(ui: &mut Ui, inner: Rect, session: &Session) -> Option<LessonRequest> {
+fn show(ui: &mut Ui, inner: Rect, session: &Session) {
     let lessons = &session.panel.lessons;
-    let mut request = heading(ui, inner, lessons);
+    heading(ui, inner, lessons);
     let shown = lessons.shown();
     let buttons_height = BUTTONS_HEIGHTS[usize::from(session.readings.touch)];
     let below = inner.height() > LOW;
     let keys = if below { keypad_height(session) } else { 0.0 };
     let foot = shown.map_or(8.0, |_| buttons_height + keys);
-    let body = Rect::from_min_max(
-        pos2(inner.left(), inner.top() + HEADING_HEIGHT),
-        pos2(inner.right() + MARGINS[0] - 4.0, inner.bottom() - foot),
-    );
+    let body = inner.with_min_y(inner.top() + HEADING_HEIGHT);
+    let body = body.with_max_y(inner.bottom() - foot);
+    let body = body.with_max_x(inner.right() + MARGINS[0] - 4.0);
     let salt = shown.map(|_| (lessons.chosen, lessons.step));
-    let scrolled = ui.scope_builder(UiBuilder::new().max_rect(body), |ui| {
+    ui.scope_builder(UiBuilder::new().max_rect(body), |ui| {
         ScrollArea::vertical()
             .id_salt(("lessons", salt))
             .auto_shrink([false, false])
@@ -65,26 +65,23 @@ fn show(ui: &mut Ui, inner: Rect, session: &Session) -> Option<LessonRequest> {
                     Some((lesson, shown)) => step(ui, session, lesson, shown, !below),
                     None => contents(ui, lessons),
                 }
-            })
-            .inner
+            });
     });
-    request = scrolled.inner.or(request);
     if shown.is_some() {
         let row = inner.with_min_y(inner.bottom() - buttons_height);
-        request = buttons(ui, row.shrink2(vec2(0.0, 8.0)), lessons).or(request);
+        buttons(ui, row.shrink2(vec2(0.0, 8.0)), lessons);
         let room = Rect::from_min_max(pos2(inner.left(), row.top() - keys), row.right_top());
-        request = keypad(ui, room).or(request);
+        keypad(ui, room);
     }
-    request
 }
 
-/// Draws the title of the lesson, with the way back to the list. Returns the request of the mouse.
-fn heading(ui: &Ui, inner: Rect, lessons: &Lessons) -> Option<LessonRequest> {
+/// Draws the title of the lesson, with the way back to the list.
+fn heading(ui: &Ui, inner: Rect, lessons: &Lessons) {
     let (painter, line) = (ui.painter(), inner.top() + MARGINS[1]);
     let at = |x: f32| pos2(inner.left() + x, line);
     let Some((lesson, _)) = lessons.shown() else {
         write(painter, at(0.0), LEFT, "Lessons", 17.0, TEXT);
-        return None;
+        return;
     };
     let font = FontId::proportional(17.0);
     let words = painter.layout_no_wrap(lesson.title.clone(), font, TEXT);
@@ -99,22 +96,19 @@ fn heading(ui: &Ui, inner: Rect, lessons: &Lessons) -> Option<LessonRequest> {
     let response = response
         .on_hover_cursor(CursorIcon::PointingHand)
         .on_hover_text("All lessons");
-    response.clicked().then_some(LessonRequest::Contents)
+    response.asks(LessonRequest::Contents);
 }
 
-/// Draws the buttons that go back, run the step again, and go on. Returns the request of the mouse.
-fn buttons(ui: &Ui, row: Rect, lessons: &Lessons) -> Option<LessonRequest> {
+/// Draws the buttons that go back, run the step again, and go on.
+fn buttons(ui: &Ui, row: Rect, lessons: &Lessons) {
     let all = [
         ("Back", lessons.previous(), false),
         ("Run again", LessonRequest::Again, false),
         ("Next", lessons.next(), lessons.given().done),
     ];
-    let mut request = None;
     for (place, (words, wish, is_due)) in columns(row, 3, 6.0).zip(all) {
-        let clicked = due(ui, place, words, is_due).clicked();
-        request = clicked.then_some(wish).or(request);
+        due(ui, place, words, is_due).asks(wish);
     }
-    request
 }
 
 /// Width of the numbers (points).
@@ -122,23 +116,19 @@ const NUMBER_WIDTH: f32 = 26.0;
 /// Radius of a dot of the progress, and the distance between dots (points).
 const DOT: (f32, f32) = (3.6, 11.0);
 
-/// Draws the list, and returns the request of the mouse.
-fn contents(ui: &mut Ui, lessons: &Lessons) -> Option<LessonRequest> {
+/// Draws the list.
+fn contents(ui: &mut Ui, lessons: &Lessons) {
     let width = ui.available_width();
     let intro = "Each step runs a scene beside this text and asks what you see.";
     ui.label(job(intro, 13.0, FAINT, width));
     ui.add_space(8.0);
-    let mut request = None;
     for (k, lesson) in ALL.iter().enumerate() {
-        if entry(ui, lessons, k, lesson) {
-            request = Some(LessonRequest::Open(k, lessons.next_step(k)));
-        }
+        entry(ui, lessons, k, lesson);
     }
-    request
 }
 
-/// Draws a lesson, and returns whether it was clicked.
-fn entry(ui: &mut Ui, lessons: &Lessons, number: usize, lesson: &Lesson) -> bool {
+/// Draws a lesson.
+fn entry(ui: &mut Ui, lessons: &Lessons, number: usize, lesson: &Lesson) {
     let dots = DOT.1 * lesson.steps.len() as f32;
     let width = ui.available_width();
     let room = width - NUMBER_WIDTH - dots - 14.0;
@@ -171,7 +161,8 @@ fn entry(ui: &mut Ui, lessons: &Lessons, number: usize, lesson: &Lesson) -> bool
     if lessons.chosen == number && lessons.step.is_none() {
         keep_in_sight(ui, "lessons", rect, number);
     }
-    response.on_hover_cursor(CursorIcon::PointingHand).clicked()
+    let response = response.on_hover_cursor(CursorIcon::PointingHand);
+    response.asks(LessonRequest::Open(number, lessons.next_step(number)));
 }
 
 /// Draws a dot: full if its step is done.
@@ -221,17 +212,11 @@ const ERASE: char = '⬅';
 /// Height of a key (points).
 const KEY_HEIGHT: f32 = 42.0;
 
-/// Draws a step, with the keypad if `keys`, and returns the request of the mouse.
-fn step(
-    ui: &mut Ui,
-    session: &Session,
-    lesson: &Lesson,
-    shown: &Step,
-    keys: bool,
-) -> Option<LessonRequest> {
+/// Draws a step, with the keypad if `keys`.
+fn step(ui: &mut Ui, session: &Session, lesson: &Lesson, shown: &Step, keys: bool) {
     let (lessons, width) = (&session.panel.lessons, ui.available_width());
     let given = lessons.given();
-    let mut request = stations(ui, session, lesson);
+    stations(ui, session, lesson);
     ui.add_space(10.0);
     ui.label(job(&shown.title, 15.5, TEXT, width));
     ui.add_space(7.0);
@@ -248,27 +233,24 @@ fn step(
     ui.add_space(10.0);
     ui.label(job(&shown.question.words, 14.5, TEXT, width));
     ui.add_space(8.0);
-    let asked = match &shown.question.answer {
+    match &shown.question.answer {
         Answer::Choice { choices, right } => choose(ui, session, &given, choices, *right),
         Answer::Number { unit, .. } => number(ui, session, &given, unit),
-    };
-    request = asked.or(request);
+    }
     if keys {
         let size = vec2(width, keypad_height(session));
         let (room, _) = ui.allocate_exact_size(size, Sense::hover());
-        request = keypad(ui, room).or(request);
+        keypad(ui, room);
     }
-    request = reply(ui, &given, shown).or(request);
+    reply(ui, &given, shown);
     ui.add_space(12.0);
-    request
 }
 
 /// Draws the steps of the lesson as a row of numbers, between which a click changes.
-fn stations(ui: &mut Ui, session: &Session, lesson: &Lesson) -> Option<LessonRequest> {
+fn stations(ui: &mut Ui, session: &Session, lesson: &Lesson) {
     let lessons = &session.panel.lessons;
     let size = HEIGHTS[usize::from(session.readings.touch)] - 4.0;
     let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), size), Sense::hover());
-    let mut request = None;
     for k in 0..lesson.steps.len() {
         let at = pos2(row.left() + (size + 16.0) * k as f32, row.top());
         let rect = Rect::from_min_size(at, vec2(size, size));
@@ -288,20 +270,16 @@ fn stations(ui: &mut Ui, session: &Session, lesson: &Lesson) -> Option<LessonReq
         let stroke = Stroke::new(1.0, if is_done { INK } else { EDGE });
         painter.circle(middle, 0.42 * size, fill, stroke);
         let words = if is_done && !is_shown {
-            SAFE.symbol().to_string()
+            SAFE.symbol.to_string()
         } else {
             (k + 1).to_string()
         };
         write(painter, middle, MIDDLE, words, 13.0, ink);
-        if response
+        response
             .on_hover_cursor(CursorIcon::PointingHand)
             .on_hover_text(&lesson.steps[k].title)
-            .clicked()
-        {
-            request = Some(LessonRequest::Open(lessons.chosen, k));
-        }
+            .asks(LessonRequest::Open(lessons.chosen, k));
     }
-    request
 }
 
 /// Draws words on a card of the whole width.
@@ -315,16 +293,9 @@ fn card(ui: &mut Ui, words: &str, colour: Color32, size: f32) {
         .galley(rect.min + vec2(10.0, 6.0), galley, colour);
 }
 
-/// Draws the choices, and returns the request of the mouse.
-fn choose(
-    ui: &mut Ui,
-    session: &Session,
-    given: &Given,
-    choices: &[Choice],
-    right: usize,
-) -> Option<LessonRequest> {
+/// Draws the choices.
+fn choose(ui: &mut Ui, session: &Session, given: &Given, choices: &[Choice], right: usize) {
     let least = HEIGHTS[usize::from(session.readings.touch)];
-    let mut request = None;
     for (k, choice) in choices.iter().enumerate() {
         let width = ui.available_width();
         let words = job(&choice.words, 13.5, TEXT, width - 44.0);
@@ -343,29 +314,22 @@ fn choose(
         let (painter, stroke) = (ui.painter(), Stroke::new(1.0, edge));
         painter.rect(rect, 6.0, fill, stroke, StrokeKind::Inside);
         let at = pos2(rect.left() + 16.0, rect.center().y);
-        match (is_given, k == right) {
-            (true, is_right) => {
-                let mark = if is_right { SAFE } else { WARNING };
-                let symbol = mark.symbol();
-                write(painter, at, MIDDLE, symbol, 14.0, mark.colour);
-            }
-            (false, _) => {
-                painter.circle_stroke(at, 5.0, Stroke::new(1.4, TRACK));
-            }
+        if is_given {
+            let mark = if k == right { SAFE } else { WARNING };
+            write(painter, at, MIDDLE, mark.symbol, 14.0, mark.colour);
+        } else {
+            painter.circle_stroke(at, 5.0, Stroke::new(1.4, TRACK));
         }
         let top = rect.center().y - 0.5 * galley.size().y;
         painter.galley(pos2(rect.left() + 32.0, top), galley, TEXT);
         ui.add_space(5.0);
-        if response.on_hover_cursor(CursorIcon::PointingHand).clicked() {
-            request = Some(LessonRequest::Answer(k));
-        }
+        let response = response.on_hover_cursor(CursorIcon::PointingHand);
+        response.asks(LessonRequest::Answer(k));
     }
-    request
 }
 
-/// Draws the field for a number with its button, and a keypad for fingers. Returns the request of
-/// the mouse.
-fn number(ui: &mut Ui, session: &Session, given: &Given, unit: &str) -> Option<LessonRequest> {
+/// Draws the field for a number with its button, and a keypad for fingers.
+fn number(ui: &mut Ui, session: &Session, given: &Given, unit: &str) {
     let height = HEIGHTS[usize::from(session.readings.touch)];
     let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     let typing = session.panel.lessons.typing;
@@ -373,13 +337,8 @@ fn number(ui: &mut Ui, session: &Session, given: &Given, unit: &str) -> Option<L
     let response = ui.interact(field, Id::unique("number"), Sense::click());
     let edge = if typing { INK } else { EDGE };
     let painter = ui.painter();
-    painter.rect(
-        field,
-        6.0,
-        Color32::WHITE,
-        Stroke::new(1.2, edge),
-        StrokeKind::Inside,
-    );
+    let stroke = Stroke::new(1.2, edge);
+    painter.rect(field, 6.0, Color32::WHITE, stroke, StrokeKind::Inside);
     let left = field.left_center() + vec2(11.0, 0.0);
     let (typed, colour) = match &given.typed[..] {
         "" => ("your answer", FAINT),
@@ -395,15 +354,10 @@ fn number(ui: &mut Ui, session: &Session, given: &Given, unit: &str) -> Option<L
     write(painter, right, RIGHT, unit, 14.0, FAINT);
     let place = row.with_min_x(row.right() - CHECK_WIDTH);
     let is_due = !given.typed.is_empty() && given.right.is_none();
-    let check = due(ui, place, "Check", is_due);
+    due(ui, place, "Check", is_due).asks(LessonRequest::Check);
     ui.add_space(5.0);
-    let mut request = None;
-    if response.on_hover_cursor(CursorIcon::Text).clicked() {
-        request = Some(LessonRequest::Type(true));
-    } else if check.clicked() {
-        request = Some(LessonRequest::Check);
-    }
-    request
+    let response = response.on_hover_cursor(CursorIcon::Text);
+    response.asks(LessonRequest::Type(true));
 }
 
 /// Returns the height of the keypad (points), which fingers have while a number is asked for.
@@ -418,52 +372,53 @@ fn keypad_height(session: &Session) -> f32 {
     }
 }
 
-/// Draws the keys of numbers, if their room has a height. Returns the request of the mouse.
-fn keypad(ui: &Ui, room: Rect) -> Option<LessonRequest> {
-    let mut request = None;
+/// Draws the keys of numbers, if their room has a height.
+fn keypad(ui: &Ui, room: Rect) {
     for (line, keys) in KEYPAD.iter().enumerate().filter(|_| room.height() > 0.0) {
         let size = vec2(room.width() / keys.len() as f32, KEY_HEIGHT);
         for (k, key) in keys.chars().enumerate() {
             let at = room.min + vec2(k as f32, line as f32) * size;
             let rect = Rect::from_min_size(at, size).shrink(2.0);
             let face = if key == '<' { ERASE } else { key };
-            if due(ui, rect, &face.to_string(), false).clicked() {
-                request = Some(LessonRequest::Letter(Some(key).filter(|key| *key != '<')));
-            }
+            let letter = Some(key).filter(|key| *key != '<');
+            due(ui, rect, &face.to_string(), false).asks(LessonRequest::Letter(letter));
         }
     }
-    request
 }
 
-/// Draws the reply to the answer, and after several wrong ones the offer to show the right one.
-/// Returns the request of the mouse.
-fn reply(ui: &mut Ui, given: &Given, step: &Step) -> Option<LessonRequest> {
-    let right = given.right?;
+/// Draws the reply to the answer, if there is one, and after several wrong ones the offer to show
+/// the right one.
+fn reply(ui: &mut Ui, given: &Given, step: &Step) {
+    let Some((right, words)) = given.right.zip(words_of_reply(given, step)) else {
+        return;
+    };
     let (mark, heading) = if right {
         (SAFE, "That is right.")
     } else {
         (WARNING, "Not quite.")
     };
-    let words = match &step.question.answer {
-        _ if right => &step.question.why,
-        Answer::Choice { choices, .. } => choices[given.choice?].reply.as_ref()?,
-        Answer::Number { .. } if given.typed.parse::<f64>().is_err() => {
-            &format!("{} is no number.", given.typed)
-        }
-        Answer::Number { hint, .. } => hint,
-    };
     let width = ui.available_width();
     ui.add_space(6.0);
     ui.label(mark.text(heading));
     ui.add_space(3.0);
-    ui.label(job(words, 13.5, TEXT, width));
-    if given.done || given.wrong < TRIES {
-        return None;
+    ui.label(job(&words, 13.5, TEXT, width));
+    if !given.done && given.wrong >= TRIES {
+        ui.add_space(8.0);
+        let (rect, _) = ui.allocate_exact_size(vec2(width, 30.0), Sense::hover());
+        due(ui, rect, "Show the answer", false).asks(LessonRequest::Reveal);
     }
-    ui.add_space(8.0);
-    let (rect, _) = ui.allocate_exact_size(vec2(width, 30.0), Sense::hover());
-    let response = due(ui, rect, "Show the answer", false);
-    response.clicked().then_some(LessonRequest::Reveal)
+}
+
+/// Returns the words of the reply to an answer.
+fn words_of_reply(given: &Given, step: &Step) -> Option<String> {
+    Some(match &step.question.answer {
+        _ if given.right? => step.question.why.clone(),
+        Answer::Choice { choices, .. } => choices[given.choice?].reply.clone()?,
+        Answer::Number { .. } if given.typed.parse::<f64>().is_err() => {
+            format!("{} is no number.", given.typed)
+        }
+        Answer::Number { hint, .. } => hint.clone(),
+    })
 }
 
 #[cfg(test)]

@@ -9,8 +9,8 @@ use egui::{
 };
 
 use super::style::{FAINT, MARGIN, PAPER, TEXT, faint, text, title};
-use super::widgets::{LEFT, keep_in_sight, write};
-use crate::session::{Action, Entry, PanelRequest, Session, Topic};
+use super::widgets::{Asks, LEFT, ask, keep_in_sight, write};
+use crate::session::{Entry, PanelRequest, Session, Topic};
 
 /// Largest width of the list (points).
 const MAX_WIDTH: f32 = 560.0;
@@ -25,16 +25,12 @@ const PICTURE_SIZE: [f32; 2] = [88.0, 55.0];
 /// Smallest width of the names (points).
 const NAME_WIDTH: f32 = 136.0;
 
-/// Draws the open list, with `pictures` of scenes by their names, and returns the action of the
-/// mouse.
-pub fn show(
-    ctx: &Context,
-    session: &Session,
-    pictures: &HashMap<String, TextureId>,
-) -> Option<Action> {
-    let list = session.list.as_ref()?;
+/// Draws the open list, if there is one, with `pictures` of scenes by their names.
+pub fn show(ctx: &Context, session: &Session, pictures: &HashMap<String, TextureId>) {
+    let Some(list) = &session.list else {
+        return;
+    };
     let window = ctx.content_rect().shrink(MARGIN);
-    let mut request = None;
     let (heading, scenes) = match list.topic {
         Topic::Scenes => ("Scenes", true),
         Topic::Solvers { .. } => ("Solvers", false),
@@ -42,11 +38,8 @@ pub fn show(
     };
     let largest = if scenes { MAX_SCENES_WIDTH } else { MAX_WIDTH };
     let width = largest.min(window.width() - 24.0);
-    let columns = if scenes && width > TWO_COLUMN_WIDTH {
-        2
-    } else {
-        1
-    };
+    let columns = 1 + usize::from(scenes && width > TWO_COLUMN_WIDTH);
+    let dark = session.runs.panes[0].show.dark;
     let area = Area::new(Id::unique("list"))
         .order(Order::Foreground)
         .anchor(Align2::CENTER_CENTER, vec2(0.0, 0.0))
@@ -93,17 +86,8 @@ pub fn show(
                                     ui.set_width(side);
                                     for (k, entry) in column {
                                         let picture = pictures.get(&entry.name).copied();
-                                        let dark = session.runs.panes[0].show.dark;
-                                        if row(
-                                            ui,
-                                            entry,
-                                            *k == list.chosen,
-                                            (scenes, picture),
-                                            dark,
-                                        ) {
-                                            request =
-                                                Some(PanelRequest::TakeEntry(entry.number).into());
-                                        }
+                                        let picture = scenes.then_some((picture, dark));
+                                        row(ui, entry, *k == list.chosen, picture);
                                     }
                                 });
                             }
@@ -113,10 +97,9 @@ pub fn show(
         });
     // A click beside the list closes it, except on the bar, which may open another.
     let outside = pressed_at(ctx).is_some_and(|at| ctx.content_rect().contains(at));
-    if request.is_none() && outside && !area.response.contains_pointer() {
-        request = Some(PanelRequest::CloseList.into());
+    if outside && !area.response.contains_pointer() {
+        ask(ctx, PanelRequest::CloseList);
     }
-    request
 }
 
 /// Returns the place of the pointer, if a button was pressed just now.
@@ -127,16 +110,10 @@ pub fn pressed_at(ctx: &Context) -> Option<Pos2> {
     })
 }
 
-/// Draws an entry, and returns whether it was clicked. One of the `scenes` has room for its
-/// `picture`, which may be missing.
-fn row(
-    ui: &mut Ui,
-    entry: &Entry,
-    chosen: bool,
-    (scenes, picture): (bool, Option<TextureId>),
-    dark: bool,
-) -> bool {
-    let height = ENTRY_HEIGHTS[usize::from(scenes)];
+/// Draws an entry. One of the scenes has room for its picture, which may be missing, and which is
+/// dark or light.
+fn row(ui: &mut Ui, entry: &Entry, chosen: bool, picture: Option<(Option<TextureId>, bool)>) {
+    let height = ENTRY_HEIGHTS[usize::from(picture.is_some())];
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     if chosen {
@@ -148,12 +125,11 @@ fn row(
         ui.painter()
             .rect_filled(rect, CornerRadius::same(5), colour);
     }
-    if scenes {
-        card(ui, rect, entry, picture, dark);
-    } else {
-        line(ui, rect, entry);
+    match picture {
+        Some((picture, dark)) => card(ui, rect, entry, picture, dark),
+        None => line(ui, rect, entry),
     }
-    response.clicked()
+    response.asks(PanelRequest::TakeEntry(entry.number));
 }
 
 /// Draws an entry of one line.
@@ -214,7 +190,7 @@ mod tests {
 
     use super::*;
     use crate::hud::window::{Window, button};
-    use crate::session::{RunAction, apply, session};
+    use crate::session::{Action, RunAction, apply, session};
 
     /// Draws the list, with the pointer at a position, and a button pressed or released there.
     fn draw(

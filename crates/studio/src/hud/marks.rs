@@ -4,7 +4,7 @@
 
 use a3_media::show;
 use egui::{
-    Align2, Context, FontId, Id, LayerId, Order, Pos2, Rect, Stroke, StrokeKind, Vec2, pos2, vec2,
+    Align2, Context, FontId, Id, LayerId, Order, Pos2, Rect, Stroke, StrokeKind, Vec2, vec2,
 };
 
 use super::layout;
@@ -68,11 +68,7 @@ pub fn hint(ctx: &Context, session: &Session) {
 fn body(ctx: &Context, session: &Session) -> Option<(Rect, Rect)> {
     let (run, panes) = (session.runs.first(), &session.runs.panes);
     let network = run.model().network()?;
-    let (window, scale) = (ctx.content_rect(), ctx.pixels_per_point());
-    let size = [window.width(), window.height()].map(|side| (side * scale).round() as u32);
-    let tile = *layout::tiles(panes.len(), size.into(), scale).first()?;
-    let corner = pos2(tile.x as f32, tile.y as f32) / scale;
-    let pane = Rect::from_min_size(corner, layout::points(tile, scale).into());
+    let (tile, pane) = *layout::tiles_in(ctx, panes.len()).first()?;
     let project = session.view.camera.projection(tile.aspect());
     let (right, up, _) = session.view.camera.axes();
     let particles = (0..run.particles()).filter(|i| !network.is_wall(*i));
@@ -89,7 +85,7 @@ fn body(ctx: &Context, session: &Session) -> Option<(Rect, Rect)> {
     let body = places.fold(Rect::NOTHING, |body, place| {
         body.union(Rect::from_min_max(place, place))
     });
-    let room = pane.intersect(window).shrink(MARGIN);
+    let room = pane.intersect(ctx.content_rect()).shrink(MARGIN);
     body.intersects(room).then_some((body, room))
 }
 
@@ -123,21 +119,15 @@ pub fn ruler(ctx: &Context, session: &Session) {
     if ends.is_empty() || session.readings.help {
         return;
     }
-    let (window, scale) = (ctx.content_rect(), ctx.pixels_per_point());
-    let size = [window.width(), window.height()].map(|side| (side * scale).round() as u32);
     let layer = LayerId::new(Order::Background, Id::unique("ruler"));
     let panes = &session.runs.panes;
-    let tiles = layout::tiles(panes.len(), size.into(), scale);
-    for (pane, tile) in panes.iter().zip(tiles) {
-        let [left, top] = [tile.x, tile.y].map(|side| side as f32 / scale);
-        let [width, height] = layout::points(tile, scale);
-        let room = Rect::from_min_size(pos2(left, top), vec2(width, height));
+    for (pane, (tile, room)) in panes.iter().zip(layout::tiles_in(ctx, panes.len())) {
         let painter = ctx.layer_painter(layer).with_clip_rect(room);
         let places = ends.iter().map(|end| {
             let at = end.place(&pane.simulation)?;
             let camera = &session.view.camera;
             let ([x, y], _) = camera.project(show::to_f32(at), tile.aspect())?;
-            Some((at, room.min + vec2(x * width, y * height)))
+            Some((at, room.min + vec2(x, y) * room.size()))
         });
         let Some(places) = places.collect::<Option<Vec<_>>>() else {
             continue;
@@ -168,10 +158,7 @@ pub fn ruler(ctx: &Context, session: &Session) {
 fn below(a: Pos2, b: Pos2, room: Rect, size: Vec2) -> Pos2 {
     let at = a + 0.5 * (b - a) + vec2(10.0, 10.0);
     let most = room.max - size;
-    pos2(
-        at.x.min(most.x).max(room.left()),
-        at.y.min(most.y).max(room.top()),
-    )
+    at.min(most).max(room.min)
 }
 
 /// Draws the box in which particles are pinned or freed, with the effect of releasing the button.
@@ -190,6 +177,8 @@ pub fn selection(ctx: &Context, selection: &Selection) {
 
 #[cfg(test)]
 mod tests {
+    use egui::pos2;
+
     use super::*;
     use crate::hud::window::Window;
     use crate::session::{frames, session};
@@ -200,10 +189,7 @@ mod tests {
         let mut window = Window::new(size);
         window.step = 0.5;
         for _ in 0..=(2.0 * time) as u32 {
-            window.frame([0.0; 2], vec![], |ctx| {
-                hint(ctx, session);
-                None::<()>
-            });
+            window.frame([0.0; 2], vec![], |ctx| hint(ctx, session));
         }
         window.read().into_iter().next()
     }

@@ -5,16 +5,16 @@
 use a3_files::report::Report;
 use a3_plot::{Figure, WorkPrecision};
 use egui::{
-    Align2, Color32, CursorIcon, FontId, Id, Label, Pos2, Rect, ScrollArea, Sense, Stroke, Ui,
-    UiBuilder, pos2, vec2,
+    Align2, Color32, CursorIcon, FontId, Id, Label, Pos2, Rect, Response, ScrollArea, Sense,
+    Stroke, Ui, UiBuilder, pos2, vec2,
 };
 
 use super::charts::{GROUND, Sheet, colour};
 use super::dock::Pane;
 use super::style::{FAINT, INK, PAPER, TEXT, WARNING, faint, text, title};
-use super::widgets::{LEFT, MIDDLE, button, chip, columns, write};
+use super::widgets::{Asks, LEFT, MIDDLE, button, chip, columns, write};
 use super::words::digits;
-use crate::session::{Action, Answer, Diagram, MeasureRequest, MethodSetting};
+use crate::session::{Answer, Diagram, MeasureRequest, MethodSetting};
 use crate::session::{Progress, Question, RunAction, Session};
 
 /// The pane.
@@ -23,7 +23,7 @@ pub const PANE: Pane = Pane {
     action: RunAction::Measure,
     key: "q",
     margins: [16.0, 17.5],
-    contents: |ui, room, session| show(ui, room, session).map(Action::Measure),
+    contents: show,
     width: (420.0, 860.0, 0.46),
     min_width_beside: 700.0,
     share_below: 0.62,
@@ -41,8 +41,8 @@ const BUTTON_WIDTHS: [f32; 2] = [92.0, 108.0];
 /// Colour of the track of a progress.
 const PROGRESS_TRACK: Color32 = Color32::from_rgb(200, 202, 207);
 
-/// Draws all rows from the top of a room. Returns the request of the mouse.
-fn show(ui: &mut Ui, room: Rect, session: &Session) -> Option<MeasureRequest> {
+/// Draws all rows from the top of a room.
+fn show(ui: &mut Ui, room: Rect, session: &Session) {
     let [heading, row, gap] = HEIGHTS;
     let mut top = room.top() + heading;
     let mut next = |height: f32| {
@@ -50,18 +50,14 @@ fn show(ui: &mut Ui, room: Rect, session: &Session) -> Option<MeasureRequest> {
         top += height + gap;
         place
     };
-    let mut request = None;
     let count = if room.width() > ONE_ROW_WIDTH { 4 } else { 2 };
     for questions in Question::ALL.chunks(count) {
         for (place, question) in columns(next(row), count, 6.0).zip(questions) {
             let chosen = session.measuring.question == *question;
-            let clicked = chip(ui, place, question.words(), chosen).clicked();
-            request = clicked
-                .then_some(MeasureRequest::Ask(*question))
-                .or(request);
+            chip(ui, place, question.words(), chosen).asks(MeasureRequest::Ask(*question));
         }
     }
-    request = settings(ui, next(row), session).or(request);
+    settings(ui, next(row), session);
     let measuring = &session.measuring;
     let going = measuring.progress();
     if let Some((question, progress, stopping)) = &going {
@@ -79,18 +75,16 @@ fn show(ui: &mut Ui, room: Rect, session: &Session) -> Option<MeasureRequest> {
         Some(Ok(found)) => {
             let panes = session.runs.panes.iter().map(|pane| &pane.simulation);
             let shown: Vec<_> = panes.map(|run| (run.method(), run.control())).collect();
-            request = answer(ui, room, found, &shown).or(request);
+            answer(ui, room, found, &shown);
         }
         Some(Err(why)) => say(ui, room, why),
         None => say(ui, room, measuring.question.about()),
     }
-    request
 }
 
 /// Draws what the question depends on, and the button that measures or stops.
-fn settings(ui: &Ui, rect: Rect, session: &Session) -> Option<MeasureRequest> {
+fn settings(ui: &Ui, rect: Rect, session: &Session) {
     let measuring = &session.measuring;
-    let mut request = None;
     let mut left = rect.left();
     // In a narrow pane, all is narrower.
     let fit = ((rect.width() - BUTTON_WIDTHS[0] - 6.0) / SETTINGS_WIDTH).min(1.0);
@@ -102,18 +96,15 @@ fn settings(ui: &Ui, rect: Rect, session: &Session) -> Option<MeasureRequest> {
     };
     for (words, on) in [("from now", false), ("the start", true)] {
         let chosen = measuring.from_start == on;
-        if chip(ui, place(78.0).shrink(1.0), words, chosen).clicked() {
-            request = Some(MeasureRequest::FromStart(on));
-        }
+        let chip = chip(ui, place(78.0).shrink(1.0), words, chosen);
+        chip.asks(MeasureRequest::FromStart(on));
     }
     place(10.0);
     match measuring.question {
         Question::Chart => {
             for (words, on) in [("work", false), ("time", true)] {
-                let chosen = measuring.timed == on;
-                if chip(ui, place(54.0).shrink(1.0), words, chosen).clicked() {
-                    request = Some(MeasureRequest::Timed(on));
-                }
+                let chip = chip(ui, place(54.0).shrink(1.0), words, measuring.timed == on);
+                chip.asks(MeasureRequest::Timed(on));
             }
         }
         Question::Choose | Question::Simplify => {
@@ -122,9 +113,8 @@ fn settings(ui: &Ui, rect: Rect, session: &Session) -> Option<MeasureRequest> {
                     let at = place(42.0).left_center() + vec2(2.0, 0.0);
                     write(ui.painter(), at, LEFT, "error", 13.0, FAINT);
                 }
-                if chip(ui, place(26.0).shrink(1.0), words, false).clicked() {
-                    request = Some(MeasureRequest::Error { finer });
-                }
+                let chip = chip(ui, place(26.0).shrink(1.0), words, false);
+                chip.asks(MeasureRequest::Error { finer });
                 if finer {
                     let words = format!("1e-{} m", measuring.digits);
                     let at = place(62.0).center();
@@ -142,8 +132,7 @@ fn settings(ui: &Ui, rect: Rect, session: &Session) -> Option<MeasureRequest> {
         (None, Some(_)) => "again",
         (None, None) => "measure",
     };
-    let clicked = button(ui, place, words, "Enter").clicked();
-    clicked.then_some(MeasureRequest::Toggle).or(request)
+    button(ui, place, words, "Enter").asks(MeasureRequest::Toggle);
 }
 
 /// Draws the progress of a measurement.
@@ -158,24 +147,11 @@ fn bar(ui: &Ui, rect: Rect, question: Question, progress: &Progress, stopping: b
     } else {
         &progress.stage
     };
-    let words = format!("{}  {stage}", question.words());
-    write(
-        painter,
-        rect.left_top(),
-        Align2::LEFT_TOP,
-        words,
-        12.5,
-        TEXT,
-    );
+    let (words, at) = (format!("{}  {stage}", question.words()), rect.left_top());
+    write(painter, at, Align2::LEFT_TOP, words, 12.5, TEXT);
     let percent = format!("{:.0} %", 100.0 * progress.share());
-    write(
-        painter,
-        rect.right_top(),
-        Align2::RIGHT_TOP,
-        percent,
-        12.5,
-        FAINT,
-    );
+    let at = rect.right_top();
+    write(painter, at, Align2::RIGHT_TOP, percent, 12.5, FAINT);
 }
 
 /// Share of the height of the room that a diagram takes, the height that it takes at least if there
@@ -185,15 +161,8 @@ const DIAGRAM: (f32, f32, f32) = (0.66, 340.0, 0.85);
 const COLUMN_GAP: f32 = 14.0;
 const MIN_LAST_WIDTH: f32 = 110.0;
 
-/// Draws an answer in a room, in which it scrolls. `shown` are the methods of the panes. Returns
-/// the request of the mouse.
-fn answer(
-    ui: &mut Ui,
-    room: Rect,
-    answer: &Answer,
-    shown: &[MethodSetting],
-) -> Option<MeasureRequest> {
-    let mut request = None;
+/// Draws an answer in a room, in which it scrolls. `shown` are the methods of the panes.
+fn answer(ui: &mut Ui, room: Rect, answer: &Answer, shown: &[MethodSetting]) {
     let width = room.width() - 10.0;
     ui.scope_builder(UiBuilder::new().max_rect(room), |ui| {
         ScrollArea::both()
@@ -209,14 +178,14 @@ fn answer(
                     let high = (share * room.height()).max(least.min(room.height()));
                     let size = vec2(width, high.min(ratio * width));
                     let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-                    request = draw(ui, place, diagram, shown);
+                    draw(ui, place, diagram, shown);
                     ui.add_space(4.0);
                 }
                 lines(ui, &answer.report.head, width);
                 if answer.offers.is_empty() {
                     table(ui, &answer.report, width);
                 } else {
-                    request = cards(ui, &answer.report, width).or(request);
+                    cards(ui, &answer.report, width);
                 }
                 lines(ui, &answer.report.foot, width);
                 for note in &answer.notes {
@@ -224,12 +193,11 @@ fn answer(
                 }
                 if answer.lean.is_some() {
                     ui.add_space(4.0);
-                    let pressed = press(ui, 270.0, "write the leanest scene and open it");
-                    request = pressed.then_some(MeasureRequest::OpenLean).or(request);
+                    let words = "write the leanest scene and open it";
+                    press(ui, 270.0, words).asks(MeasureRequest::OpenLean);
                 }
             });
     });
-    request
 }
 
 /// Writes lines, wrapped to a width.
@@ -252,10 +220,8 @@ fn table(ui: &mut Ui, report: &Report, width: f32) {
         ui.painter().layout(words.trim().into(), font, colour, wrap)
     };
     let natural = |c: usize| {
-        let cells = report
-            .rows
-            .iter()
-            .map(|row| lay(ui, &row[c], TEXT, f32::INFINITY));
+        let rows = report.rows.iter();
+        let cells = rows.map(|row| lay(ui, &row[c], TEXT, f32::INFINITY));
         cells.map(|cell| cell.size().x).fold(0.0, f32::max)
     };
     let mut widths: Vec<_> = (0..headings.len()).map(natural).collect();
@@ -296,11 +262,11 @@ fn table(ui: &mut Ui, report: &Report, width: f32) {
     ui.add_space(4.0);
 }
 
-/// Draws a card for each row of the table, with buttons to use it and to run it beside. Returns the
-/// request of the mouse.
-fn cards(ui: &mut Ui, report: &Report, width: f32) -> Option<MeasureRequest> {
-    let (headings, rows) = report.rows.split_first()?;
-    let mut request = None;
+/// Draws a card for each row of the table, with buttons to use it and to run it beside.
+fn cards(ui: &mut Ui, report: &Report, width: f32) {
+    let Some((headings, rows)) = report.rows.split_first() else {
+        return;
+    };
     for (k, row) in rows.iter().enumerate() {
         egui::Frame::new()
             .fill(PAPER.to_opaque())
@@ -321,23 +287,18 @@ fn cards(ui: &mut Ui, report: &Report, width: f32) -> Option<MeasureRequest> {
                 });
                 ui.add_space(4.0);
                 ui.horizontal(|ui| {
-                    if press(ui, 84.0, "use it") {
-                        request = Some(MeasureRequest::Use(k));
-                    }
-                    if press(ui, 120.0, "run it beside") {
-                        request = Some(MeasureRequest::RowBeside(k));
-                    }
+                    press(ui, 84.0, "use it").asks(MeasureRequest::Use(k));
+                    press(ui, 120.0, "run it beside").asks(MeasureRequest::RowBeside(k));
                 });
             });
     }
     ui.add_space(2.0);
-    request
 }
 
-/// Draws a button of a width, and returns whether it was clicked.
-fn press(ui: &mut Ui, width: f32, words: &str) -> bool {
+/// Draws a button of a width.
+fn press(ui: &mut Ui, width: f32, words: &str) -> Response {
     let (rect, _) = ui.allocate_exact_size(vec2(width, 26.0), Sense::hover());
-    chip(ui, rect, words, false).clicked()
+    chip(ui, rect, words, false)
 }
 
 /// Writes a message in place of an answer, wrapped to the width of a rectangle.
@@ -354,15 +315,16 @@ const POINT_REACH: f64 = 12.0;
 /// Largest distance of the pointer from the curve that it shows (points).
 const CURVE_REACH: f64 = 7.0;
 
-/// Draws a diagram with its legend in a room. Runs of the panes have rings. Returns the request of
-/// the mouse.
-fn draw(ui: &Ui, room: Rect, diagram: &Diagram, shown: &[MethodSetting]) -> Option<MeasureRequest> {
+/// Draws a diagram with its legend in a room. Runs of the panes have rings.
+fn draw(ui: &Ui, room: Rect, diagram: &Diagram, shown: &[MethodSetting]) {
     let response = ui.interact(room, Id::unique("diagram"), Sense::click());
     let painter = ui.painter();
     let sheet = [room.width(), room.height()].map(f64::from);
     let (least, most, share) = SIZE;
     let text = (sheet[0] / share).clamp(least, most);
-    let figure = diagram.chart.draw_bare(sheet, text)?;
+    let Some(figure) = diagram.chart.draw_bare(sheet, text) else {
+        return;
+    };
     let pointer = response.hover_pos().map(|at| (at - room.min).into());
     let pointer = pointer.map(|at: [f32; 2]| at.map(f64::from));
     let pointed = pointer.and_then(|at| run_at(&figure, at));
@@ -380,12 +342,11 @@ fn draw(ui: &Ui, room: Rect, diagram: &Diagram, shown: &[MethodSetting]) -> Opti
             painter.circle_stroke(sheet.place(*at), 8.5, Stroke::new(1.8, TEXT));
         }
     }
-    let ([curve, run], at) = pointed?;
-    ui.set_cursor_icon(CursorIcon::PointingHand);
-    note_run(&sheet, &diagram.chart, [curve, run], sheet.place(at));
-    response
-        .clicked()
-        .then_some(MeasureRequest::RunBeside { curve, run })
+    if let Some(([curve, run], at)) = pointed {
+        ui.set_cursor_icon(CursorIcon::PointingHand);
+        note_run(&sheet, &diagram.chart, [curve, run], sheet.place(at));
+        response.asks(MeasureRequest::RunBeside { curve, run });
+    }
 }
 
 /// Returns the run nearest to a point within reach, and its place.

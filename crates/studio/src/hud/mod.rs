@@ -3,7 +3,6 @@
 
 mod all;
 mod bar;
-mod blow_up;
 mod charts;
 mod dock;
 pub mod edit;
@@ -32,6 +31,7 @@ pub use overlay::Overlay;
 pub use panel::csv;
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::{Studio, caption};
+pub use widgets::asked;
 #[cfg(not(target_arch = "wasm32"))]
 pub use words::digits;
 

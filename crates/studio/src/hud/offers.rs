@@ -7,15 +7,16 @@ use a3_core::Control;
 use a3_files::holding::Sought;
 use a3_files::rounding::short;
 use egui::{
-    Align, Align2, Area, Color32, Context, CursorIcon, Id, Layout, Order, Pos2, Rect, Sense,
-    Stroke, Ui, pos2, vec2,
+    Align, Align2, Area, Color32, Context, CursorIcon, Id, Layout, Order, Pos2, Rect, Response,
+    Sense, Stroke, Ui, vec2,
 };
 
 use super::layout;
 use super::style::{FAINT, PAPER, TEXT, sheet, title};
-use super::widgets::button;
-use crate::session::panes::MAX_PANES;
-use crate::session::{Action, MeasureRequest, PanelRequest, RunAction, Session, WindowAction};
+use super::widgets::{Asks, button, fixed};
+use crate::session::{
+    Action, MAX_PANES, MeasureRequest, PanelRequest, RunAction, Session, WindowAction,
+};
 
 /// Width and height of a button on a pane (points).
 const SIDE: f32 = 26.0;
@@ -24,49 +25,36 @@ const EDGE_GAP: f32 = 8.0;
 /// Width of a pane below which it has no buttons (points).
 const MIN_WIDTH: f32 = 280.0;
 
-/// Draws the buttons of all panes, unless something covers them. Returns the action of the mouse.
-pub fn on_panes(ctx: &Context, session: &Session) -> Option<Action> {
+/// Draws the buttons of all panes, unless something covers them.
+pub fn on_panes(ctx: &Context, session: &Session) {
     let (readings, count) = (&session.readings, session.runs.panes.len());
     if readings.help || readings.asks_to_quit || session.list.is_some() {
-        return None;
+        return;
     }
-    let (window, scale) = (ctx.content_rect(), ctx.pixels_per_point());
-    let size = [window.width(), window.height()].map(|side| (side * scale).round() as u32);
-    let mut request = None;
-    for (k, tile) in layout::tiles(count, size.into(), scale)
-        .into_iter()
-        .enumerate()
-    {
-        let [width, _] = layout::points(tile, scale);
-        if width < MIN_WIDTH {
-            continue;
-        }
-        let right = (tile.x + tile.width) as f32 / scale - EDGE_GAP;
-        let top = tile.y as f32 / scale + EDGE_GAP;
+    let tiles = layout::tiles_in(ctx, count).into_iter().enumerate();
+    for (k, (_, room)) in tiles.filter(|(_, (_, room))| room.width() >= MIN_WIDTH) {
         let kinds = [
             (count > 1, true, PanelRequest::RemovePane(k)),
             (count < MAX_PANES, false, PanelRequest::AddPane(k)),
         ];
-        let mut at = right;
+        let mut corner = room.right_top() + vec2(-EDGE_GAP - SIDE, EDGE_GAP);
         for (_, closes, change) in kinds.into_iter().filter(|(there, ..)| *there) {
-            let place = Rect::from_min_size(pos2(at - SIDE, top), vec2(SIDE, SIDE));
-            at -= SIDE + 4.0;
-            Area::new(Id::unique(("pane button", k, closes)))
-                .fixed_pos(place.min)
-                .constrain(false)
-                .fade_in(false)
-                .show(ctx, |ui| {
-                    if pane_button(ui, place, closes) {
-                        request = Some(Action::Panel(change));
-                    }
-                });
+            let place = Rect::from_min_size(corner, vec2(SIDE, SIDE));
+            corner.x -= SIDE + 4.0;
+            fixed(
+                ctx,
+                Id::unique(("pane button", k, closes)),
+                place.min,
+                |ui| {
+                    pane_button(ui, place, closes).asks(change);
+                },
+            );
         }
     }
-    request
 }
 
-/// Draws a cross that closes, or a plus that adds. Returns whether it was clicked.
-fn pane_button(ui: &mut Ui, place: Rect, closes: bool) -> bool {
+/// Draws a cross that closes, or a plus that adds.
+fn pane_button(ui: &mut Ui, place: Rect, closes: bool) -> Response {
     let response = ui.allocate_rect(place, Sense::click());
     let painter = ui.painter();
     let hovered = response.hovered();
@@ -90,10 +78,8 @@ fn pane_button(ui: &mut Ui, place: Rect, closes: bool) -> bool {
     } else {
         "Run another solver beside, from here"
     };
-    response
-        .on_hover_cursor(CursorIcon::PointingHand)
-        .on_hover_text(about)
-        .clicked()
+    let response = response.on_hover_cursor(CursorIcon::PointingHand);
+    response.on_hover_text(about)
 }
 
 /// Width and height of a button of an offer (points).
@@ -103,13 +89,12 @@ const GAP: f32 = 8.0;
 /// Distance of the buttons from the lower edge of the picture (points).
 const DISTANCE: f32 = 24.0;
 
-/// Draws the buttons while something is offered and where they cover no text, and returns the
-/// action of the mouse.
-pub fn offer(ctx: &Context, session: &Session) -> Option<Action> {
+/// Draws the buttons while something is offered and where they cover no text.
+pub fn offer(ctx: &Context, session: &Session) {
     let readings = &session.readings;
     let offers = offers(session);
     if readings.help || readings.asks_to_quit || session.list.is_some() || offers.is_empty() {
-        return None;
+        return;
     }
     let tools = ctx.memory(|memory| memory.area_rect(Id::unique("tools")));
     let tools = tools.filter(|_| session.panel.editor.open);
@@ -132,9 +117,8 @@ pub fn offer(ctx: &Context, session: &Session) -> Option<Action> {
             .is_some_and(|it| it.intersects(place))
     };
     if texts.into_iter().any(is_taken) || !room.contains_rect(place) {
-        return None;
+        return;
     }
-    let mut request = None;
     Area::new(Id::unique("offers"))
         .order(Order::Foreground)
         .anchor(Align2::CENTER_BOTTOM, [0.0, -DISTANCE - tools])
@@ -142,27 +126,22 @@ pub fn offer(ctx: &Context, session: &Session) -> Option<Action> {
             ui.with_layout(layout, |ui| {
                 for (words, key, offer) in offers {
                     let (rect, _) = ui.allocate_exact_size(SIZE.into(), Sense::hover());
-                    let clicked = button(ui, rect, &words, key).clicked();
-                    request = clicked.then_some(offer).or(request);
+                    button(ui, rect, &words, key).asks(offer);
                 }
             });
         });
-    request
 }
 
 /// Returns the buttons below the message, each with its words, its key and its action.
 fn offers(session: &Session) -> Vec<(String, &'static str, Action)> {
     let mut all = vec![];
     if session.readings.offers_apart {
-        all.push((
-            "Bring the surfaces apart".into(),
-            "x",
-            RunAction::Touch.into(),
-        ));
+        let words = "Bring the surfaces apart".into();
+        all.push((words, "x", RunAction::Touch.into()));
     }
     let panes = session.runs.panes.iter().enumerate();
     for (k, pane) in panes.filter(|(_, pane)| !pane.alive()) {
-        let again = match pane.limit.sought().and_then(Sought::control) {
+        let again = match pane.limit.sought.and_then(Sought::control) {
             Some(Control::Step(step)) => format!("Run with {} ms", short(1e3 * step, 3)),
             Some(Control::Tolerance(tolerance)) => format!("Run with {tolerance:e}"),
             None => continue,
@@ -183,9 +162,8 @@ fn offers(session: &Session) -> Vec<(String, &'static str, Action)> {
 /// Width and height of a button of the question (points).
 const BUTTON_SIZE: [f32; 2] = [112.0, 28.0];
 
-/// Asks whether to quit, with a button for each answer, and returns the action of the mouse.
-pub fn ask_to_quit(ctx: &Context) -> Option<Action> {
-    let mut request = None;
+/// Asks whether to quit, with a button for each answer.
+pub fn ask_to_quit(ctx: &Context) {
     Area::new(Id::unique("question"))
         .order(Order::Foreground)
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
@@ -200,14 +178,11 @@ pub fn ask_to_quit(ctx: &Context) -> Option<Action> {
                     ] {
                         let size = BUTTON_SIZE.into();
                         let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
-                        if button(ui, rect, words, key).clicked() {
-                            request = Some(action.into());
-                        }
+                        button(ui, rect, words, key).asks(action);
                     }
                 });
             });
         });
-    request
 }
 
 #[cfg(test)]

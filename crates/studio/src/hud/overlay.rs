@@ -155,10 +155,8 @@ fn filled(shapes: &[ClippedShape], pixels_per_point: f32, size: (u32, u32)) -> V
         let bounds = *moved * bounds;
         let bounds = bounds.intersect(*clip_rect) * pixels_per_point;
         // Smooth edges add a pixel.
-        let (min, max) = (
-            bounds.min.floor() - vec2(1.0, 1.0),
-            bounds.max.ceil() + vec2(1.0, 1.0),
-        );
+        let pixel = vec2(1.0, 1.0);
+        let (min, max) = (bounds.min.floor() - pixel, bounds.max.ceil() + pixel);
         let mut part = Rect::from_min_max(min, max).intersect(view);
         if !bounds.is_positive() || !part.is_positive() {
             continue;

@@ -13,12 +13,12 @@ use egui::{
 use super::dock::Pane;
 use super::style::{self, FAINT, INK, TEXT};
 use super::widgets::{
-    CHOSEN, HOVERED, LEFT, MIDDLE, RIGHT, arrow, button, columns, keep_in_sight, slider, switch,
+    Asks, LEFT, MIDDLE, RIGHT, arrow, ask, button, columns, keep_in_sight, row, slider, switch,
     write,
 };
 use crate::session::WindowAction;
 use crate::session::panel::{self, Knob};
-use crate::session::{Action, Dial, DialScale, PanelRequest, RunAction, Session, Turn, is_here};
+use crate::session::{Dial, DialScale, PanelRequest, RunAction, Session, Turn, is_here};
 
 pub use plots::csv;
 
@@ -28,7 +28,7 @@ pub const PANE: Pane = Pane {
     action: RunAction::Panel,
     key: "Tab",
     margins: [14.0, 18.0],
-    contents: |ui, room, session| show(ui, room, session),
+    contents: show,
     width: (304.0, 460.0, 0.2),
     min_width_beside: 600.0,
     share_below: 0.5,
@@ -46,36 +46,28 @@ const BUTTONS_HEIGHT: f32 = 46.0;
 /// Distance between groups of rows (points).
 const GROUP_GAP: f32 = 7.0;
 
-/// Draws the panel, and returns the action of the mouse.
-fn show(ui: &mut Ui, inner: Rect, session: &Session) -> Option<Action> {
-    let request = title(ui, inner, session).map(Action::Panel);
-    let room = Rect::from_min_max(
-        pos2(inner.left(), inner.top() + TITLE_HEIGHT),
-        pos2(inner.right(), inner.bottom() - BUTTONS_HEIGHT),
-    );
-    let (top, turned) = scrolled(ui, room, |ui, room| {
+/// Draws the panel.
+fn show(ui: &mut Ui, inner: Rect, session: &Session) {
+    title(ui, inner, session);
+    let room = inner.with_min_y(inner.top() + TITLE_HEIGHT);
+    let room = room.with_max_y(inner.bottom() - BUTTONS_HEIGHT);
+    let top = scrolled(ui, room, |ui, room| {
         if panel::shows_parts(session) {
             part_rows::show(ui, room, session)
         } else {
             knobs(ui, room, session)
         }
     });
-    let request = turned.map(Action::Panel).or(request);
-    let request = buttons(ui, inner, session).or(request);
+    buttons(ui, inner, session);
     let pane = &session.runs.panes[panel::pane(session)];
     let pointer = ui.ctx().pointer_latest_pos();
     let room = room.with_min_y(top + 12.0);
     plots::draw(ui.painter(), room, &pane.samples, pointer);
-    request
 }
 
 /// Draws rows from the top of a room, in which they scroll if they do not fit. Returns the bottom
-/// of the last row, and the request of the mouse.
-fn scrolled(
-    ui: &mut Ui,
-    room: Rect,
-    rows: impl FnOnce(&Ui, Rect) -> (f32, Option<PanelRequest>),
-) -> (f32, Option<PanelRequest>) {
+/// of the last row.
+fn scrolled(ui: &mut Ui, room: Rect, rows: impl FnOnce(&Ui, Rect) -> f32) -> f32 {
     // The row under the pointer and the chosen one are wider than the room.
     let wide = room.expand2(vec2(6.0, 0.0));
     ui.scope_builder(UiBuilder::new().max_rect(wide), |ui| {
@@ -84,19 +76,17 @@ fn scrolled(
             .auto_shrink([false, false])
             .show(ui, |ui| {
                 let top = ui.cursor().top();
-                let (bottom, request) = rows(ui, room.translate(vec2(0.0, top - room.top())));
+                let bottom = rows(ui, room.translate(vec2(0.0, top - room.top())));
                 ui.allocate_space(vec2(wide.width(), bottom - top));
-                (bottom, request)
+                bottom
             })
             .inner
     })
     .inner
 }
 
-/// Draws the rows of the knobs from the top of a room. Returns the bottom of the last row, and the
-/// request of the mouse.
-fn knobs(ui: &Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest>) {
-    let mut request = None;
+/// Draws the rows of the knobs from the top of a room. Returns the bottom of the last row.
+fn knobs(ui: &Ui, room: Rect, session: &Session) -> f32 {
     let rows = panel::rows(session);
     let chosen = rows.iter().rposition(|(k, ..)| *k <= session.panel.row);
     let chosen = chosen.unwrap_or(0);
@@ -117,15 +107,14 @@ fn knobs(ui: &Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest>) 
             typed: session.panel.typed.as_deref().filter(|_| n == chosen),
             is_marked: session.panel.all_marked,
         };
-        request = row.show(ui, place).or(request);
+        row.show(ui, place);
         top += ROW_HEIGHT;
     }
-    (top, request)
+    top
 }
 
-/// Draws the titles of the knobs and of the parts, between which a click changes. Returns the
-/// request of the mouse.
-fn title(ui: &Ui, inner: Rect, session: &Session) -> Option<PanelRequest> {
+/// Draws the titles of the knobs and of the parts, between which a click changes.
+fn title(ui: &Ui, inner: Rect, session: &Session) {
     let painter = ui.painter();
     let line = inner.top() + 19.0;
     let named = match session.runs.panes.len() {
@@ -139,7 +128,7 @@ fn title(ui: &Ui, inner: Rect, session: &Session) -> Option<PanelRequest> {
         let first = first.filter(|row| *row >= panel::measuring_row()).min();
         titles.push(("Parts", on_parts, first.unwrap_or(0)));
     }
-    let (mut left, mut request) = (inner.left(), None);
+    let mut left = inner.left();
     for (name, shown, first) in titles {
         let words = format!("{name}{}", if shown { &named } else { "" });
         let font = FontId::proportional(17.0);
@@ -150,17 +139,17 @@ fn title(ui: &Ui, inner: Rect, session: &Session) -> Option<PanelRequest> {
         if shown {
             let line = rect.bottom() + 1.0;
             painter.hline(rect.x_range(), line, Stroke::new(1.6, INK));
-        } else if response.on_hover_cursor(CursorIcon::PointingHand).clicked() {
-            request = Some(PanelRequest::ChooseRow(first));
+        } else {
+            let response = response.on_hover_cursor(CursorIcon::PointingHand);
+            response.asks(PanelRequest::ChooseRow(first));
         }
         left = rect.right() + TITLE_GAP;
     }
-    request
 }
 
 /// Draws the buttons: write a scene file, write the plots, start or stop a live film, and film the
 /// last seconds.
-fn buttons(ui: &Ui, inner: Rect, session: &Session) -> Option<Action> {
+fn buttons(ui: &Ui, inner: Rect, session: &Session) {
     let last = format!("last {} s", session.panel.film_seconds);
     let live = session.readings.film.as_ref().is_some_and(|film| film.live);
     let record = if live { "stop" } else { "film" };
@@ -172,13 +161,10 @@ fn buttons(ui: &Ui, inner: Rect, session: &Session) -> Option<Action> {
     ];
     let top = inner.bottom() - BUTTONS_HEIGHT + 8.0;
     let room = Rect::from_x_y_ranges(inner.x_range(), top..=inner.bottom() - 10.0);
-    let mut request = None;
     let here = buttons.into_iter().filter(|(.., action)| is_here(*action));
     for (place, (words, key, action)) in columns(room, 4, 5.0).zip(here) {
-        let clicked = button(ui, place, words, key).clicked();
-        request = clicked.then_some(action).or(request);
+        button(ui, place, words, key).asks(action);
     }
-    request
 }
 
 /// Width of the name (points).
@@ -200,43 +186,34 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// Draws the row, and returns the request of the mouse.
-    fn show(&self, ui: &Ui, rect: Rect) -> Option<PanelRequest> {
+    /// Draws the row.
+    fn show(&self, ui: &Ui, rect: Rect) {
         let Self { number, dial, .. } = *self;
         let id = |part| Id::unique((part, number));
-        let whole = ui.interact(rect.expand2(vec2(6.0, 0.0)), id("row"), Sense::click());
+        let colour = if self.chosen { TEXT } else { FAINT };
+        row(ui, rect, id("row"), self.chosen, || self.tooltip())
+            .asks(PanelRequest::ChooseRow(number));
         let painter = ui.painter();
-        if self.chosen || whole.hovered() {
-            let colour = if self.chosen { CHOSEN } else { HOVERED };
-            painter.rect_filled(rect.expand2(vec2(6.0, -0.5)), 5.0, colour);
+        let (at, name) = (rect.left_center(), self.knob.name);
+        write(painter, at, LEFT, name, 12.5, colour);
+        let [left, right] = [rect.left() + NAME_WIDTH, rect.right() - VALUE_WIDTH];
+        let room = rect.with_min_x(left).with_max_x(right - 4.0);
+        let turn = match dial.scale {
+            DialScale::Choice(_) => choice(ui, rect.with_min_x(left - 18.0), id, dial),
+            DialScale::Switch => switch(ui, room, id("dial"), dial.value != 0.0),
+            _ => slider(ui, room, id("dial"), dial),
+        };
+        if !matches!(dial.scale, DialScale::Choice(_)) {
+            self.value(ui, rect.with_min_x(right), id("value"));
         }
-        let (at, colour) = (rect.left_center(), if self.chosen { TEXT } else { FAINT });
-        write(painter, at, LEFT, self.knob.name, 12.5, colour);
-        let whole = whole.on_hover_text(self.tooltip());
-        let mut request = None;
-        if let DialScale::Choice(_) = dial.scale {
-            let left = rect.left() + NAME_WIDTH - 18.0;
-            let room = Rect::from_x_y_ranges(left..=rect.right(), rect.y_range());
-            request = choice(ui, room, id, dial).map(|turn| PanelRequest::Turn(number, turn));
-        } else {
-            let value =
-                Rect::from_x_y_ranges(rect.right() - VALUE_WIDTH..=rect.right(), rect.y_range());
-            let left = rect.left() + NAME_WIDTH;
-            let room = Rect::from_x_y_ranges(left..=value.left() - 4.0, rect.y_range());
-            let set = if dial.scale == DialScale::Switch {
-                switch(ui, room, id("dial"), dial.value != 0.0)
-            } else {
-                slider(ui, room, id("dial"), dial)
-            };
-            let set = set.map(|turn| PanelRequest::Turn(number, turn));
-            request = set.or(self.value(ui, value, id("value"))).or(request);
+        if let Some(turn) = turn {
+            ask(ui, PanelRequest::Turn(number, turn));
         }
-        request.or_else(|| whole.clicked().then_some(PanelRequest::ChooseRow(number)))
     }
 
     /// Draws the value, or the text typed for it. A click starts typing, and a double click
     /// restores the scene's own value.
-    fn value(&self, ui: &Ui, rect: Rect, id: Id) -> Option<PanelRequest> {
+    fn value(&self, ui: &Ui, rect: Rect, id: Id) {
         let dial = self.dial;
         let response = ui.interact(rect, id, Sense::click());
         let typeable = dial.scale.ends().is_some();
@@ -256,9 +233,10 @@ impl Row<'_> {
         }
         let response = response.on_hover_text(self.tooltip());
         if response.double_clicked() {
-            return Some(PanelRequest::Turn(self.number, Turn::Own));
+            ask(ui, PanelRequest::Turn(self.number, Turn::Own));
+        } else if typeable {
+            response.asks(PanelRequest::Type(self.number));
         }
-        (typeable && response.clicked()).then_some(PanelRequest::Type(self.number))
     }
 
     /// Returns the tooltip: the knob's description, range and use.

@@ -69,11 +69,8 @@ impl Studio {
         } else {
             layout::focus(panes.len(), layout::points(tiles[0], scale))
         });
-        let pictures: Vec<_> = panes
-            .iter()
-            .map(|pane| pane.show.picture(camera, scale))
-            .zip(tiles)
-            .collect();
+        let pictures = panes.iter().map(|pane| pane.show.picture(camera, scale));
+        let pictures: Vec<_> = pictures.zip(tiles).collect();
         let write = |encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView| {
             if panes.len() == 1 {
                 return vec![];
@@ -81,8 +78,7 @@ impl Studio {
             let mut overlay = Overlay::new(gpu, TEXT_FORMAT);
             overlay.dark = panes[0].show.dark;
             overlay.write(gpu, encoder, view, (size, scale), |ctx| {
-                // A picture has no mouse.
-                let _ = text::show_text(ctx, panes, readings);
+                text::show_text(ctx, panes, readings);
             })
         };
         self.offscreen

@@ -5,12 +5,12 @@ mod chart;
 mod formulas;
 mod rows;
 
-use egui::{Align2, Area, Color32, Context, Id, Pos2, Rect, Sense, Stroke, Ui, Vec2, pos2, vec2};
+use egui::{Align2, Color32, Context, Id, Pos2, Rect, Sense, Stroke, Ui, Vec2, vec2};
 
 use super::charts::{Sheet, colour};
 use super::dock::Pane;
 use super::style::{FAINT, TEXT};
-use super::widgets::{chip, columns, write};
+use super::widgets::{Asks, chip, columns, fixed, write};
 use super::words::signed;
 use crate::session::{Action, Mode, Pick, PlotFile, PlotRequest, Quantity, RunAction, SPANS};
 use crate::session::{IS_PAGE, Session, WindowAction};
@@ -25,7 +25,7 @@ pub const PANE: Pane = Pane {
     action: RunAction::Plots,
     key: "F3",
     margins: [16.0, 17.5],
-    contents: |ui, room, session| show(ui, room, session),
+    contents: show,
     width: (380.0, 800.0, 0.4),
     min_width_beside: 700.0,
     share_below: 0.55,
@@ -39,37 +39,29 @@ const ASKED: [Vec2; 2] = [vec2(70.0, 5.0), vec2(136.0, 25.0)];
 /// Distance between rows (points).
 const GAP: f32 = 7.0;
 
-/// Draws all rows from the top of a room. Returns the request of the mouse.
-fn show(ui: &mut Ui, room: Rect, session: &Session) -> Option<Action> {
+/// Draws all rows from the top of a room.
+fn show(ui: &mut Ui, room: Rect, session: &Session) {
     let [heading, modes, buttons] = HEIGHTS;
     let top = room.top() + heading;
     let tabs = Rect::from_x_y_ranges(room.x_range(), top..=top + modes);
     let settings = &session.panel.plotting;
     let asked = Rect::from_min_size(room.min + ASKED[0], ASKED[1]);
-    let asked = chip(ui, asked, "what is computed?", settings.formulas).clicked();
-    let mut chosen = asked.then_some(PlotRequest::Formulas);
+    chip(ui, asked, "what is computed?", settings.formulas).asks(PlotRequest::Formulas);
     for (place, mode) in columns(tabs, 3, 6.0).zip(Mode::ALL) {
-        let is_shown = settings.mode == mode;
-        let clicked = chip(ui, place, mode.name(), is_shown).clicked();
-        chosen = clicked.then_some(PlotRequest::Mode(mode)).or(chosen);
+        chip(ui, place, mode.name(), settings.mode == mode).asks(PlotRequest::Mode(mode));
     }
     let mut rows = Rows {
         ui,
         session,
         room: room.with_min_y(top + modes + GAP),
-        request: chosen,
     };
     rows.picks();
     let is_empty = session.runs.panes[0].traces.is_empty();
     if !is_empty {
         rows.variables();
     }
-    let (top, request) = (rows.room.top(), rows.request);
-    let below = room.bottom() - buttons - 10.0;
-    let mut place = Rect::from_min_max(
-        pos2(room.left(), top + 2.0),
-        pos2(room.right(), below - GAP),
-    );
+    let (top, below) = (rows.room.top(), room.bottom() - buttons - 10.0);
+    let mut place = Rect::from_x_y_ranges(room.x_range(), top + 2.0..=below - GAP);
     if settings.formulas {
         place.min.y = formulas::show(ui, place, session);
     }
@@ -77,71 +69,57 @@ fn show(ui: &mut Ui, room: Rect, session: &Session) -> Option<Action> {
         draw(ui, place, session);
     }
     let place = Rect::from_x_y_ranges(room.x_range(), below..=below + buttons);
-    foot(ui, place, session).or(request.map(Action::Plot))
+    foot(ui, place, session);
 }
 
-/// Draws the spans of time, and the buttons that write files. Returns the request of the mouse.
-fn foot(ui: &Ui, rect: Rect, session: &Session) -> Option<Action> {
+/// Draws the spans of time, and the buttons that write files.
+fn foot(ui: &Ui, rect: Rect, session: &Session) {
     let settings = &session.panel.plotting;
-    let mut request = None;
     let mut left = rect.left();
     if settings.mode != Mode::Section {
         for span in SPANS {
-            let place = Rect::from_min_size(pos2(left, rect.top()), vec2(44.0, rect.height()));
-            if chip(ui, place, &format!("{span} s"), settings.span == span).clicked() {
-                request = Some(PlotRequest::Span(span).into());
-            }
-            left = place.right() + 4.0;
+            let place = Rect::from_x_y_ranges(left..=left + 44.0, rect.y_range());
+            let chip = chip(ui, place, &format!("{span} s"), settings.span == span);
+            chip.asks(PlotRequest::Span(span));
+            left += 48.0;
         }
     }
     let mut right = rect.right();
     let ruled = settings.ruler.is_some();
-    for (words, wish, chosen) in [
-        (
-            if IS_PAGE { "SVG" } else { "PNG" },
-            WindowAction::WritePlot(PlotFile::Picture).into(),
-            false,
-        ),
-        (
-            "CSV",
-            WindowAction::WritePlot(PlotFile::Table).into(),
-            false,
-        ),
+    let [picture, table] = [PlotFile::Picture, PlotFile::Table].map(WindowAction::WritePlot);
+    let buttons: [(_, Action, _); 4] = [
+        (if IS_PAGE { "SVG" } else { "PNG" }, picture.into(), false),
+        ("CSV", table.into(), false),
         ("clear", PlotRequest::Clear.into(), false),
         ("ruler", PlotRequest::Ruler.into(), ruled),
-    ] {
-        let place = Rect::from_min_max(pos2(right - 50.0, rect.top()), pos2(right, rect.bottom()));
-        if chip(ui, place, words, chosen).clicked() {
-            request = Some(wish);
-        }
-        right = place.left() - 4.0;
+    ];
+    for (words, wish, chosen) in buttons {
+        let place = Rect::from_x_y_ranges(right - 50.0..=right, rect.y_range());
+        chip(ui, place, words, chosen).asks(wish);
+        right -= 54.0;
     }
-    request
 }
 
 /// Draws a button that plots the particle whose springs are listed, below that list, unless the
 /// plots are open.
-pub fn offer(ctx: &Context, session: &Session) -> Option<Action> {
+pub fn offer(ctx: &Context, session: &Session) {
     let is_free = !session.panel.has(RunAction::Plots) && !session.readings.help;
     let [pane] = &*session.runs.panes else {
-        return None;
+        return;
     };
-    let i = pane.show.springs_of.filter(|_| is_free)?;
-    let list = ctx.memory(|memory| memory.area_rect(Id::unique("run")))?;
+    let i = pane.show.springs_of.filter(|_| is_free);
+    let list = ctx.memory(|memory| memory.area_rect(Id::unique("run")));
+    let Some((i, list)) = i.zip(list) else {
+        return;
+    };
     let at = list.left_bottom() + vec2(0.0, 6.0);
     let pick = Pick::at(session.runs.first(), i);
     let words = format!("plot {} (F3)", pick.name());
     let rect = Rect::from_min_size(at, vec2(14.0 + 7.5 * words.len() as f32, 26.0));
-    let clicked = Area::new(Id::unique("plot it"))
-        .fixed_pos(at)
-        .constrain(false)
-        .fade_in(false)
-        .show(ctx, |ui| {
-            ui.allocate_rect(rect, Sense::hover());
-            chip(ui, rect, &words, false).clicked()
-        })
-        .inner;
-    clicked.then_some(RunAction::Plots.into())
+    fixed(ctx, Id::unique("plot it"), at, |ui| {
+        ui.allocate_rect(rect, Sense::hover());
+        chip(ui, rect, &words, false).asks(RunAction::Plots);
+    });
 }
 
 /// Returns the request that a double click makes on a particle, or else on the spring, rod or rope
@@ -193,14 +171,7 @@ fn draw(ui: &Ui, room: Rect, session: &Session) {
         } else {
             "There is no room for the plots: make the window higher."
         };
-        write(
-            painter,
-            room.left_top(),
-            Align2::LEFT_TOP,
-            words,
-            13.0,
-            FAINT,
-        );
+        write(painter, room.min, Align2::LEFT_TOP, words, 13.0, FAINT);
         return;
     }
     let sheet = Sheet::new(painter, room, &figure);
@@ -316,7 +287,7 @@ mod tests {
         let px = (size[0] as u32, size[1] as u32);
         let [right, bottom] = layout::insets(session, px, 1.0);
         let action = window.click([right, bottom], at, |ctx| {
-            show_all(ctx, session, &HashMap::new())
+            show_all(ctx, session, &HashMap::new());
         });
         let is_in_pane = |rect: &Rect| {
             if layout::is_covered(session, size) {
@@ -410,7 +381,7 @@ mod tests {
             let mut window = Window::new(size);
             let insets = layout::insets(&session, (size[0] as u32, size[1] as u32), 1.0);
             window.click(insets, Pos2::new(5.0, 5.0), |ctx| {
-                show_all(ctx, &session, &HashMap::new())
+                show_all(ctx, &session, &HashMap::new());
             });
             let all = window.written();
             for said in [
@@ -454,7 +425,7 @@ mod tests {
         assert_eq!(click("particle 399"), PlotRequest::Toggle(other));
         assert_eq!(click("what is computed?"), PlotRequest::Formulas);
         let lower = Trigger::Rises(Variable::VelocityY, 0.0);
-        let trigger = |session: &Session| session.runs.panes[0].traces.trigger();
+        let trigger = |session: &Session| session.runs.panes[0].traces.trigger;
         assert_eq!(trigger(&session), lower);
     }
 

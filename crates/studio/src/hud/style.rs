@@ -39,17 +39,12 @@ pub const MARGIN: f32 = 12.0;
 /// A grade of safety: a colour, and a symbol for those who cannot distinguish colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
-    symbol: char,
+    pub symbol: char,
     /// Colour of the symbol and of the text beside it.
     pub colour: Color32,
 }
 
 impl Mark {
-    /// Returns the symbol alone.
-    pub fn symbol(self) -> char {
-        self.symbol
-    }
-
     /// Returns text of normal size, with this mark.
     pub fn text(self, words: &str) -> RichText {
         text(format!("{} {words}", self.symbol)).color(self.colour)

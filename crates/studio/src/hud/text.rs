@@ -2,20 +2,18 @@
 
 use a3_core::Simulation;
 use a3_media::show;
-use a3_render::Tile;
-use egui::{Align2, Area, Context, Frame, Grid, Id, Label, Margin, Rect, RichText, Ui, pos2, vec2};
+use egui::{Align2, Area, Context, Frame, Grid, Id, Label, Margin, Rect, Ui, vec2};
 
-use super::blow_up::{advice, explain};
 use super::help::help;
 use super::legend::legend;
 use super::style::{ALARM, MARGIN, PAPER, SAFE, column, faint, sheet, text, title};
-use super::words::{self, digits, energy, frames, scene, speed, states, time};
+use super::words::{self, advice, digits, energy, explain, frames, scene, speed, states, time};
 use super::{layout, marks};
-use crate::session::{Action, Pane, Readings};
+use crate::session::{Pane, Readings};
 
-/// Draws all text over the picture, and returns the action of the mouse. Sheets are below one
-/// another, and the help hides them, so that nothing overlaps even in a small window.
-pub fn show_text(ctx: &Context, panes: &[Pane], readings: &Readings) -> Option<Action> {
+/// Draws all text over the picture. Sheets are below one another, and the help hides them, so that
+/// nothing overlaps even in a small window.
+pub fn show_text(ctx: &Context, panes: &[Pane], readings: &Readings) {
     match panes {
         [pane] if !readings.help => single(ctx, pane, readings),
         [_] => {}
@@ -24,10 +22,9 @@ pub fn show_text(ctx: &Context, panes: &[Pane], readings: &Readings) -> Option<A
     if let Some(selection) = &readings.selection {
         marks::selection(ctx, selection);
     }
-    readings
-        .help
-        .then(|| help(ctx, panes.len() > 1, readings.touch))
-        .flatten()
+    if readings.help {
+        help(ctx, panes.len() > 1, readings.touch);
+    }
 }
 
 /// Width of the names of readings (points).
@@ -112,39 +109,28 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
         .spacing([14.0, 3.0])
         .max_col_width((ui.available_width() - NAME_WIDTH).max(60.0))
         .show(ui, |ui| {
-            let mut row = |name: &str, value: RichText| {
+            let (name, value) = words::energy(pane);
+            let speed = words::speed(readings).filter(|_| !readings.paused);
+            let stretch = pane.stretch.map(|it| format!("{it:.3} at most"));
+            let [frames, each] = words::frames(readings).map_or([None, None], |it| it.map(Some));
+            let rows = [
+                ("time", Some(text(words::time(simulation)))),
+                ("speed", speed.map(text)),
+                ("slow", words::slow_motion(readings).map(text)),
+                ("steps", words::steps(simulation).map(text)),
+                ("limit", Some(words::limit_row(pane))),
+                (name, Some(text(value))),
+                ("gained", words::gained(simulation)),
+                ("constraint", words::worst_constraint(simulation)),
+                ("stretch", stretch.map(text)),
+                ("contact", words::contact(simulation).map(text)),
+                ("frames", frames.map(text)),
+                ("each", each.map(text)),
+            ];
+            for (name, value) in rows.into_iter().filter_map(|(name, it)| Some((name, it?))) {
                 ui.label(faint(name));
                 ui.label(value);
                 ui.end_row();
-            };
-            row("time", text(words::time(simulation)));
-            if let Some(speed) = words::speed(readings).filter(|_| !readings.paused) {
-                row("speed", text(speed));
-            }
-            if let Some(slow) = words::slow_motion(readings) {
-                row("slow", text(slow));
-            }
-            if let Some(steps) = words::steps(simulation) {
-                row("steps", text(steps));
-            }
-            row("limit", words::limit_row(pane));
-            let (name, value) = words::energy(pane);
-            row(name, text(value));
-            if let Some(gained) = words::gained(simulation) {
-                row("gained", gained);
-            }
-            if let Some(broken) = words::worst_constraint(simulation) {
-                row("constraint", broken);
-            }
-            if let Some(stretch) = pane.stretch {
-                row("stretch", text(format!("{stretch:.3} at most")));
-            }
-            if let Some(contact) = words::contact(simulation) {
-                row("contact", text(contact));
-            }
-            if let Some([frames, each]) = words::frames(readings) {
-                row("frames", text(frames));
-                row("each", text(each));
             }
         });
     if let Some(states) = words::states(simulation, readings) {
@@ -196,22 +182,13 @@ const PANE_MARGIN: f32 = 8.0;
 /// Draws the text over several panes: a bar with their common readings, and a sheet in each pane
 /// unless the help is shown.
 fn several(ctx: &Context, panes: &[Pane], readings: &Readings) {
-    let scale = ctx.pixels_per_point();
-    let window = ctx.content_rect();
-    let size = window.size() * scale;
-    let size = (size.x.round() as u32, size.y.round() as u32);
-    let tiles = layout::tiles(panes.len(), size, scale).into_iter();
-    let place = |tile: Tile| {
-        let corner = pos2(tile.x as f32, tile.y as f32) / scale;
-        Rect::from_min_size(corner, layout::points(tile, scale).into())
-    };
-    let rects: Vec<_> = tiles.map(place).collect();
-    let above = Rect::from_min_max(window.min, pos2(window.right(), rects[0].top()));
+    let (window, tiles) = (ctx.content_rect(), layout::tiles_in(ctx, panes.len()));
+    let above = window.with_max_y(tiles[0].1.top());
     within(ctx, "bar", above, |ui| bar(ui, panes, readings));
     if readings.help {
         return;
     }
-    for (k, (pane, rect)) in panes.iter().zip(rects).enumerate() {
+    for (k, (pane, (_, rect))) in panes.iter().zip(tiles).enumerate() {
         within(ctx, &format!("pane {k}"), rect, |ui| {
             let size = layout::Text::of(panes.len(), rect.size().into());
             let low = size != layout::Text::Whole;
@@ -265,10 +242,8 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
                     return;
                 }
                 // The latest time: some runs may have diverged.
-                let latest = panes
-                    .iter()
-                    .map(|pane| &pane.simulation)
-                    .max_by(|a, b| a.time().total_cmp(&b.time()));
+                let runs = panes.iter().map(|pane| &pane.simulation);
+                let latest = runs.max_by(|a, b| a.time().total_cmp(&b.time()));
                 say(text(time(latest.unwrap_or(run))));
                 // In a wide bar, the states below include the pause.
                 let stands = readings.paused && width > 600.0;
@@ -327,31 +302,25 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, size: layout::Text) {
             text(format!("{} s", words::seconds(run.control().value()))),
         ),
     };
-    let limit = ("limit", words::limit_row(pane));
     let time = ("time", text(time(run)));
     let error = ("error", text(error(pane, readings)));
-    let (name, value) = energy(pane);
-    let energy = (name, text(value));
-    let gained = words::gained(run).map(|words| ("gained", words));
-    let broken = words::worst_constraint(run).map(|words| ("constraint", words));
-    let contact = words::contact(run).map(|words| ("contact", text(words)));
     let cost = ("cost", text(cost));
     let lines = if low {
         vec![vec![step, time], vec![error], vec![cost]]
     } else {
-        vec![
-            vec![step],
-            vec![limit],
-            vec![time],
-            vec![error],
-            vec![energy],
-            gained.into_iter().collect(),
-            broken.into_iter().collect(),
-            contact.into_iter().collect(),
-            vec![cost],
-        ]
+        let (name, value) = energy(pane);
+        let rare = [
+            ("gained", words::gained(run)),
+            ("constraint", words::worst_constraint(run)),
+            ("contact", words::contact(run).map(text)),
+        ];
+        let rare = rare.into_iter().filter_map(|(name, it)| Some((name, it?)));
+        let limit = ("limit", words::limit_row(pane));
+        let first = [step, limit, time, error, (name, text(value))];
+        let all = first.into_iter().chain(rare).chain([cost]);
+        all.map(|line| vec![line]).collect()
     };
-    for line in lines.iter().filter(|line| !line.is_empty()) {
+    for line in lines {
         let mut job = egui::text::LayoutJob::default();
         for (k, (name, value)) in line.iter().enumerate() {
             let gap = if k > 0 { "    " } else { "" };
@@ -389,7 +358,7 @@ fn error(pane: &Pane, readings: &Readings) -> String {
 mod tests {
     use super::*;
     use crate::hud::{pane, read};
-    use crate::session::Cost;
+    use crate::session::{Cost, Rates};
 
     #[test]
     fn all_readings_are_shown() {
@@ -401,10 +370,12 @@ mod tests {
         run.grab(210).unwrap();
         run.take_steps(7).unwrap();
         let readings = Readings {
-            factor: 0.98,
-            rate: 59.6,
-            simulating: 0.2,
-            drawing: 3.4,
+            rates: Rates {
+                factor: 0.98,
+                rate: 59.6,
+                simulating: 0.2,
+                drawing: 3.4,
+            },
             message: Some("saved".into()),
             ..Readings::default()
         };
@@ -440,7 +411,10 @@ mod tests {
             assert!(!words.contains(said), "{words}");
         }
         let slow = Readings {
-            factor: 0.0005,
+            rates: Rates {
+                factor: 0.0005,
+                ..Rates::default()
+            },
             ..Readings::default()
         };
         let (words, _) = read(&circle, &slow, [1280.0, 720.0]);
@@ -535,8 +509,11 @@ mod tests {
     #[test]
     fn every_pane_shows_its_own_readings_and_nothing_overlaps() {
         let readings = Readings {
-            rate: 59.6,
-            factor: 0.98,
+            rates: Rates {
+                rate: 59.6,
+                factor: 0.98,
+                ..Rates::default()
+            },
             in_window: true,
             ..Readings::default()
         };

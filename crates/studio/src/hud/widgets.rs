@@ -1,13 +1,14 @@
-//! What the sheets are made of: words, buttons, sliders and switches, and rows of them.
+//! What the sheets are made of: words, buttons, sliders and switches, and rows of them, and what
+//! the mouse asks for there.
 
 use egui::style::ScrollAnimation;
 use egui::{
-    Align2, Color32, CursorIcon, FontId, Id, Painter, Pos2, Rect, Response, Sense, Shape, Stroke,
-    StrokeKind, Ui, pos2, vec2,
+    Align2, Area, Color32, Context, CursorIcon, FontId, Id, Painter, Pos2, Rect, Response, Sense,
+    Shape, Stroke, StrokeKind, Ui, pos2, vec2,
 };
 
 use super::style::{FAINT, INK, TEXT};
-use crate::session::{Dial, Turn};
+use crate::session::{Action, Dial, Turn};
 
 /// Colour of the sheets.
 pub const SHEET: Color32 = Color32::from_rgb(226, 226, 224);
@@ -26,6 +27,48 @@ pub const HOVERED: Color32 = Color32::from_rgb(217, 218, 220);
 pub const LEFT: Align2 = Align2::LEFT_CENTER;
 pub const RIGHT: Align2 = Align2::RIGHT_CENTER;
 pub const MIDDLE: Align2 = Align2::CENTER_CENTER;
+
+/// Looks at what the mouse asked for, or changes it.
+fn wish<R>(ctx: &Context, look: impl FnOnce(&mut Option<Action>) -> R) -> R {
+    let id = Id::unique("asked");
+    ctx.data_mut(|data| look(data.get_temp_mut_or_default(id)))
+}
+
+/// Asks for an action, in place of what was asked for before.
+pub fn ask(ctx: &Context, action: impl Into<Action>) {
+    let action = action.into();
+    wish(ctx, |wish| *wish = Some(action));
+}
+
+/// Takes the action that the mouse asked for, if it did.
+pub fn asked(ctx: &Context) -> Option<Action> {
+    wish(ctx, Option::take)
+}
+
+/// Returns whether the mouse asked for an action.
+pub fn is_asked(ctx: &Context) -> bool {
+    wish(ctx, |wish| wish.is_some())
+}
+
+/// What can be clicked.
+pub trait Asks {
+    /// Asks for an action if this was clicked.
+    fn asks(&self, wish: impl Into<Action>);
+}
+
+impl Asks for Response {
+    fn asks(&self, wish: impl Into<Action>) {
+        if self.clicked() {
+            ask(&self.ctx, wish);
+        }
+    }
+}
+
+/// Draws contents in a place that they do not leave.
+pub fn fixed<R>(ctx: &Context, id: Id, at: Pos2, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let area = Area::new(id).fixed_pos(at).constrain(false).fade_in(false);
+    area.show(ctx, contents).inner
+}
 
 /// Writes words of a size (points), aligned at a place, and returns their rectangle.
 pub fn write(
@@ -65,35 +108,25 @@ fn face(ui: &Ui, rect: Rect, words: &str, size: f32, [fill, edge, ink]: [Color32
 /// Draws a small button, which is chosen or not.
 pub fn chip(ui: &Ui, rect: Rect, words: &str, chosen: bool) -> Response {
     let response = sense(ui, rect, words);
-    face(
-        ui,
-        rect,
-        words,
-        13.0,
-        match (chosen, response.hovered()) {
-            (true, _) => [INK, INK, Color32::WHITE],
-            (false, true) => [CHOSEN, EDGE, TEXT],
-            (false, false) => [SHEET, EDGE, TEXT],
-        },
-    );
+    let colours = match (chosen, response.hovered()) {
+        (true, _) => [INK, INK, Color32::WHITE],
+        (false, true) => [CHOSEN, EDGE, TEXT],
+        (false, false) => [SHEET, EDGE, TEXT],
+    };
+    face(ui, rect, words, 13.0, colours);
     response.on_hover_cursor(CursorIcon::PointingHand)
 }
 
 /// Draws a button of the lessons; one that `is_due` stands out.
 pub fn due(ui: &Ui, rect: Rect, words: &str, is_due: bool) -> Response {
     let response = sense(ui, rect, words);
-    face(
-        ui,
-        rect,
-        words,
-        13.5,
-        match (is_due, response.hovered()) {
-            (true, false) => [INK, INK, Color32::WHITE],
-            (true, true) => [INK.gamma_multiply(0.86), INK, Color32::WHITE],
-            (false, true) => [HOVERED, EDGE, TEXT],
-            (false, false) => [CARD, EDGE, TEXT],
-        },
-    );
+    let colours = match (is_due, response.hovered()) {
+        (true, false) => [INK, INK, Color32::WHITE],
+        (true, true) => [INK.gamma_multiply(0.86), INK, Color32::WHITE],
+        (false, true) => [HOVERED, EDGE, TEXT],
+        (false, false) => [CARD, EDGE, TEXT],
+    };
+    face(ui, rect, words, 13.5, colours);
     response
 }
 
@@ -119,13 +152,13 @@ pub fn button(ui: &Ui, rect: Rect, words: &str, key: &str) -> Response {
     response
 }
 
-/// Draws the cross that closes a sheet, around a place. Returns whether it was clicked.
-pub fn cross(ui: &Ui, at: Pos2) -> bool {
+/// Draws the cross that closes a sheet, around a place.
+pub fn cross(ui: &Ui, at: Pos2) -> Response {
     let place = Rect::from_center_size(at, vec2(32.0, 32.0));
     let response = sense(ui, place, "close");
     let colour = if response.hovered() { TEXT } else { FAINT };
     write(ui.painter(), at, MIDDLE, "✖", 14.0, colour);
-    response.on_hover_cursor(CursorIcon::PointingHand).clicked()
+    response.on_hover_cursor(CursorIcon::PointingHand)
 }
 
 /// Draws an arrow to the left or to the right with its tip near a place.
@@ -144,6 +177,23 @@ pub fn keep_in_sight(ui: &Ui, list: &str, row: Rect, chosen: usize) {
         ui.data_mut(|data| data.insert_temp(was, chosen));
         ui.scroll_to_rect_animation(row, None, ScrollAnimation::none());
     }
+}
+
+/// Draws the ground of a row that can be chosen, with its tooltip.
+pub fn row(
+    ui: &Ui,
+    rect: Rect,
+    id: Id,
+    chosen: bool,
+    tooltip: impl FnOnce() -> String,
+) -> Response {
+    let whole = ui.interact(rect.expand2(vec2(6.0, 0.0)), id, Sense::click());
+    if chosen || whole.hovered() {
+        let colour = if chosen { CHOSEN } else { HOVERED };
+        let place = rect.expand2(vec2(6.0, -0.5));
+        ui.painter().rect_filled(place, 5.0, colour);
+    }
+    whole.on_hover_text(tooltip())
 }
 
 /// Draws a track with a thumb, and a mark at the scene's own value. Returns the turn by the mouse.
@@ -197,7 +247,6 @@ mod tests {
                     let rect = Rect::from_min_size(pos2(10.0, 10.0), vec2(width, 26.0));
                     let area = egui::Area::new(Id::unique("it")).fixed_pos(rect.min);
                     area.show(ctx, |ui| button(ui, rect, "measure", "Enter"));
-                    None::<()>
                 });
             }
             let texts = window.written();

@@ -4,6 +4,8 @@ use egui::epaint::{ClippedShape, MarginF32};
 use egui::{Context, Event, Modifiers, PointerButton, Pos2, RawInput, Rect, SafeAreaInsets, Shape};
 
 use super::style::context;
+use super::widgets::asked;
+use crate::session::Action;
 
 /// A window of egui without a display.
 pub struct Window {
@@ -44,12 +46,12 @@ impl Window {
 
     /// Runs a frame, in which something takes room on the right and below (points), and returns
     /// the action of the mouse.
-    pub fn frame<T>(
+    pub fn frame(
         &mut self,
         [right, bottom]: [f32; 2],
         events: Vec<Event>,
-        mut show: impl FnMut(&Context) -> Option<T>,
-    ) -> Option<T> {
+        mut show: impl FnMut(&Context),
+    ) -> Option<Action> {
         self.time += self.step;
         let taken = MarginF32 {
             right,
@@ -65,23 +67,20 @@ impl Window {
         };
         let root = input.viewports.entry(egui::ViewportId::ROOT).or_default();
         root.native_pixels_per_point = Some(self.scale);
-        let mut action = None;
-        let mut output = self.ctx.run_ui(input, |ui| {
-            action = show(ui.ctx()).or(action.take());
-        });
+        let mut output = self.ctx.run_ui(input, |ui| show(ui.ctx()));
         output.textures_delta.set.clear();
         output.textures_delta.free.clear();
         self.shapes = output.shapes;
-        action
+        asked(&self.ctx)
     }
 
     /// Runs three frames with the pointer at a place, and clicks there.
-    pub fn click<T>(
+    pub fn click(
         &mut self,
         taken: [f32; 2],
         at: Pos2,
-        mut show: impl FnMut(&Context) -> Option<T>,
-    ) -> Option<T> {
+        mut show: impl FnMut(&Context),
+    ) -> Option<Action> {
         let presses = [None, None, None, Some(true), Some(false)];
         presses.into_iter().fold(None, |action, pressed| {
             let press = pressed.map(|pressed| button(at, pressed));

@@ -1,19 +1,22 @@
 //! Films of a session: of its last seconds, or live from now on. At most one film frame is drawn
 //! after each frame of the window, and a thread encodes the film frames.
 
-mod encoder;
-
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::thread::{self, JoinHandle};
 
 use a3_core::{Checkpoint, Simulation};
-use a3_files::ending::Ending;
 use a3_files::failure::Failure;
-use a3_media::film;
+use a3_media::film::{self, Film};
 use a3_render::{Camera, Gpu, Offscreen};
-use encoder::Encoder;
 
 use crate::hud::Studio;
 use crate::session::{FilmProgress, Pane, Readings, Session};
+
+/// Size of the window's picture (px), and its pixels per point.
+type Picture = ((u32, u32), f32);
 
 /// A film in the making.
 pub struct Recorder {
@@ -43,28 +46,19 @@ enum Source {
     },
 }
 
-/// Format of a film.
-#[derive(Clone, Copy)]
-pub struct Format {
-    pub ending: Ending,
-    /// Size of the window's picture (px).
-    pub size: (u32, u32),
-    /// Pixels per point in the window.
-    pub scale: f32,
-}
-
 impl Recorder {
-    /// Creates a live film of the session. Fails if its file or its picture cannot be created.
-    pub fn from_now(gpu: &Gpu, session: &Session, format: Format) -> Result<Self, Failure> {
-        let interval = 1.0 / format.ending.rate();
+    /// Creates a live film of the session, whose picture in the window has a size (px) and a number
+    /// of pixels per point. Fails if its file or its picture cannot be created.
+    pub fn from_now(gpu: &Gpu, session: &Session, picture: Picture) -> Result<Self, Failure> {
+        let interval = 1.0 / session.panel.film.rate();
         let next = session.runs.clock;
-        Self::new(gpu, session, format, Source::Session { next, interval })
+        Self::new(gpu, session, picture, Source::Session { next, interval })
     }
 
     /// Creates a film of the last seconds, as many as the panel sets. Fails if the timeline has
     /// fewer than two moments, or as [`Self::from_now`] does.
-    pub fn of_past(gpu: &Gpu, session: &Session, format: Format) -> Result<Self, Failure> {
-        let (seconds, interval) = (session.panel.film_seconds, 1.0 / format.ending.rate());
+    pub fn of_past(gpu: &Gpu, session: &Session, picture: Picture) -> Result<Self, Failure> {
+        let (seconds, interval) = (session.panel.film_seconds, 1.0 / session.panel.film.rate());
         let moments = session.timeline.last(seconds, interval);
         if moments.len() < 2 {
             return Err(Failure::run("There is nothing to film yet."));
@@ -83,15 +77,16 @@ impl Recorder {
             count: moments.len(),
             moments: moments.into_iter(),
         };
-        Self::new(gpu, session, format, source)
+        Self::new(gpu, session, picture, source)
     }
 
-    fn new(gpu: &Gpu, session: &Session, format: Format, source: Source) -> Result<Self, Failure> {
-        let Format {
-            ending,
-            size,
-            scale,
-        } = format;
+    fn new(
+        gpu: &Gpu,
+        session: &Session,
+        (size, scale): Picture,
+        source: Source,
+    ) -> Result<Self, Failure> {
+        let ending = session.panel.film;
         let within = ending.fit(size);
         let (path, film) = film::begin_new(&session.runs.first().scene().name, ending, within)?;
         let offscreen = Offscreen::new(gpu, within).map_err(Failure::run)?;
@@ -128,7 +123,8 @@ impl Recorder {
     /// Draws the next frame if it is due and the encoder has room. Returns whether more frames
     /// follow. Fails if the device cannot draw.
     pub fn draw_next(&mut self, gpu: &Gpu, session: &mut Session) -> Result<bool, Failure> {
-        if self.encoder.has_failed() {
+        // The thread ends early only after a failure.
+        if self.encoder.thread.is_finished() {
             return Ok(false);
         }
         if !self.encoder.has_room() {
@@ -206,5 +202,54 @@ impl Recorder {
             "wrote {path}: {} frames, {seconds:.1} s",
             self.drawn
         ))
+    }
+}
+
+/// Largest number of frames that wait or are being encoded.
+const MAX_WAITING_FRAMES: usize = 8;
+
+/// An encoder of frames, on its own thread, in the order in which they are added.
+pub struct Encoder {
+    frames: Sender<Vec<u8>>,
+    /// Number of frames that wait or are being encoded.
+    waiting: Arc<AtomicUsize>,
+    thread: JoinHandle<Result<(), Failure>>,
+}
+
+impl Encoder {
+    pub fn new(mut film: Box<dyn Film + Send>) -> Self {
+        let (frames, taken) = channel::<Vec<u8>>();
+        let waiting = Arc::new(AtomicUsize::new(0));
+        let encoded = waiting.clone();
+        let thread = thread::spawn(move || {
+            for pixels in taken {
+                film.add(&pixels)?;
+                encoded.fetch_sub(1, Ordering::Relaxed);
+            }
+            film.finish()
+        });
+        Self {
+            frames,
+            waiting,
+            thread,
+        }
+    }
+
+    /// Returns whether fewer frames wait than the limit.
+    pub fn has_room(&self) -> bool {
+        self.waiting.load(Ordering::Relaxed) < MAX_WAITING_FRAMES
+    }
+
+    /// Adds a frame: rows from the top, four bytes per pixel. Frames after a failure are dropped.
+    pub fn add(&self, pixels: Vec<u8>) {
+        self.waiting.fetch_add(1, Ordering::Relaxed);
+        let _ = self.frames.send(pixels);
+    }
+
+    /// Waits until all frames are encoded and the film is complete. Fails if the encoder did.
+    pub fn finish(self) -> Result<(), Failure> {
+        drop(self.frames);
+        let ended = self.thread.join();
+        ended.unwrap_or_else(|_| Err(Failure::run("the film could not be encoded")))
     }
 }

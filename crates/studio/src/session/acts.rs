@@ -1,26 +1,88 @@
-//! Actions of the user on a session, by keys, mouse and lists: what opens beside the picture, one
-//! sheet at a time, and surfaces that cross, which come apart if the user wants that.
+//! The door of a session: what a user asks for by keys, mouse and lists. What opens beside the
+//! picture, one sheet at a time; panes that come and go while the motion goes on; lessons, which
+//! put another session in its place; and surfaces that cross, which come apart on request.
 
 use std::path::Path;
 use std::sync::Arc;
 
-use a3_core::{Checkpoint, Network, Simulation, integrators};
+use a3_core::{Checkpoint, Error, Network, Simulation, integrators};
 use a3_files::holding::Sought;
 use a3_media::show;
-use a3_scenes::Setup;
+use a3_scenes::{Description, Setup};
 
-use super::action::RunAction;
+use super::action::{Action, MeasureRequest, PanelKey, RunAction};
 use super::history::Change;
 use super::list::{List, TextKey, Topic, solvers};
-use super::pane::Pane;
-use super::plotting;
+use super::measuring::MethodSetting;
+use super::origin::Origin;
+use super::pane::{ADAPTIVE_SLICE, Pane};
+use super::reference::continue_from;
 use super::runs::KEY_BUDGET;
 use super::state::Session;
+use super::traces::PlotRequest;
 use super::tuning::Tuning;
-use super::{looks, panes, save};
+use super::{asking, begin, looks, panel, plotting, save};
+
+/// Carries out an action, and returns whether it changed the scene. Those on a solver are for the
+/// run of pane `at`; those of the window do nothing here.
+pub fn apply(session: &mut Session, action: impl Into<Action>, at: usize) -> bool {
+    let own = &mut session.panel;
+    match action.into() {
+        Action::Run(action) => return session.act(action, at),
+        Action::Window(_) => {}
+        Action::Panel(request) => return panel::apply(session, request),
+        Action::Measure(request) => return asking::apply(session, request, panel::pane(session)),
+        Action::Learn(request) => {
+            return own.lessons.apply(request, &mut own.all_marked) && session.begin_step();
+        }
+        Action::Plot(request) => {
+            if let Some(said) = plotting::apply(&mut own.plotting, &mut session.runs.panes, request)
+            {
+                session.readings.say(said);
+            }
+        }
+        Action::Type(key) if own.has(RunAction::Lessons) => {
+            own.lessons.type_key(key, &mut own.all_marked);
+        }
+        Action::Type(key) => panel::type_key(session, key),
+    }
+    false
+}
+
+/// Returns the action of a key in what is open beside the picture. With `other`, a knob turns by
+/// the other step of its scale.
+pub fn action_beside(session: &Session, key: PanelKey, other: bool) -> Option<Action> {
+    let by = match key {
+        PanelKey::Left => Some(-1),
+        PanelKey::Right => Some(1),
+        _ => None,
+    };
+    match session.panel.beside.filter(|_| !session.readings.help)? {
+        RunAction::Panel => Some(panel::request(session, key, other).into()),
+        RunAction::Lessons => session.panel.lessons.request(key).map(Action::Learn),
+        RunAction::Measure => match (by, key) {
+            (Some(by), _) => {
+                let next = session.measuring.question.neighbour(by);
+                Some(MeasureRequest::Ask(next).into())
+            }
+            (None, PanelKey::Toggle) => Some(MeasureRequest::Toggle.into()),
+            _ => None,
+        },
+        _ => Some(PlotRequest::Mode(session.panel.plotting.mode.neighbour(by?)).into()),
+    }
+}
+
+/// Returns whether keys type something: the value of a knob, or the answer to a question.
+pub fn is_typing(session: &Session) -> bool {
+    session.shows(RunAction::Lessons) && session.panel.lessons.typing
+        || session.shows(RunAction::Panel) && session.panel.typed.is_some()
+}
 
 /// Largest slowness: motion at 1 / 2^6 of real time.
 const MAX_SLOWNESS: i32 = 6;
+
+/// Largest number of panes.
+pub const MAX_PANES: usize = 4;
 
 impl Session {
     /// Performs an action, and returns whether it changed the scene. Solvers and scene files are
@@ -135,7 +197,7 @@ impl Session {
 
     /// Resets all runs, and gives that of a pane, which blew up, what would have held.
     pub fn run_again(&mut self, at: usize) {
-        let sought = self.runs.panes[at].limit.sought();
+        let sought = self.runs.panes[at].limit.sought;
         if let Some(control) = sought.and_then(Sought::control) {
             self.set_step_of(at, control.value());
             self.reset();
@@ -147,7 +209,10 @@ impl Session {
     fn step(&mut self) {
         self.readings.paused = true;
         self.runs.drop_due_steps();
-        self.advance(self.runs.longest_step(), KEY_BUDGET, KEY_BUDGET);
+        let alive = self.runs.panes.iter().filter(|pane| pane.alive());
+        let steps = alive.map(|pane| pane.simulation.step_size().unwrap_or(ADAPTIVE_SLICE));
+        let longest = steps.fold(0.0, f64::max);
+        self.advance(longest, KEY_BUDGET, KEY_BUDGET);
     }
 
     /// Shows the error of a refused request. Returns whether there is none.
@@ -217,7 +282,8 @@ impl Session {
         if self.list.take().is_some_and(|list| list.topic == topic) {
             return;
         }
-        if let Some(why) = self.panel.hidden.refusal_of_list(topic) {
+        let refusal = self.panel.hidden.refusal(RunAction::Solvers);
+        if let Some(why) = refusal.filter(|_| topic != Topic::Scenes) {
             return self.readings.say(why);
         }
         let panes = &self.runs.panes;
@@ -259,7 +325,7 @@ impl Session {
                 let method = &integrators::METHODS[number];
                 let pane = pane.min(self.runs.panes.len() - 1);
                 let control = self.runs.panes[pane].control_of(method, &self.tuning.defaults);
-                let added = panes::add(self, pane, (method, control));
+                let added = self.add_pane(pane, (method, control));
                 self.report(added)
             }
             None => false,
@@ -466,10 +532,135 @@ impl Session {
             self.list = None;
         }
     }
+
+    /// Adds a pane that continues the run of pane `at` by another method. Errors count from now on,
+    /// if there were none before. The timeline begins again.
+    ///
+    /// # Errors
+    /// There is no room for another pane, the run has blown up, or the method does not support it.
+    pub fn add_pane(&mut self, at: usize, (method, control): MethodSetting) -> Result<(), String> {
+        if self.runs.panes.len() >= MAX_PANES {
+            return Err(format!("There are {MAX_PANES} panes already: close one."));
+        }
+        self.release();
+        self.runs.align();
+        let beside = &self.runs.panes[at];
+        if !beside.alive() {
+            return Err("This run has blown up: reset it (key r).".into());
+        }
+        let run = &beside.simulation;
+        let continued = || -> Result<Simulation, Error> {
+            let mut next = Simulation::new(run.scene().clone(), method, control)?;
+            continue_from(&mut next, run)?;
+            Ok(next)
+        };
+        let simulation = continued().map_err(|why| why.to_string())?;
+        let mut show = beside.show.clone();
+        show.clear_trail();
+        show.hovered = None;
+        let mut next = Pane::new(simulation, show);
+        next.traces = beside.traces.without_values();
+        let added = self.runs.add_pane(next);
+        added.map_err(|failure| failure.to_string())?;
+        self.readings.read_reference(self.runs.reference.as_ref());
+        self.begin_new_run();
+        self.readings.say(format!("{} runs beside.", method.title));
+        Ok(())
+    }
+
+    /// Removes a pane, unless it is the only one. Undone changes of knobs of panes are forgotten,
+    /// and the timeline begins again.
+    pub fn remove_pane(&mut self, at: usize) -> bool {
+        if self.runs.panes.len() < 2 || at >= self.runs.panes.len() {
+            return false;
+        }
+        self.release();
+        self.runs.remove_pane(at);
+        self.panel.pane = 0;
+        self.history.clear();
+        self.view.stop_following();
+        self.list.take_if(|list| list.topic != Topic::Scenes);
+        self.readings.read_reference(self.runs.reference.as_ref());
+        self.begin_new_run();
+        true
+    }
+
+    /// Sets the method of pane `at` and its step or tolerance, or says why that is impossible.
+    pub fn use_setting(&mut self, at: usize, (method, control): MethodSetting) {
+        let defaults = self.tuning.defaults;
+        let set = self.runs.set_method(method, at, &defaults);
+        let set = set.and_then(|()| self.runs.set_step_of(at, control.value()));
+        self.readings.say(match set {
+            Ok(()) => format!("{} is in use.", method.title),
+            Err(why) => why.to_string(),
+        });
+    }
+
+    /// Begins the run of the step of a lesson that is shown, and returns whether that was possible.
+    fn begin_step(&mut self) -> bool {
+        let Some((_, step)) = self.panel.lessons.shown() else {
+            return false;
+        };
+        match begin::step(step) {
+            Ok(next) => self.replace(next),
+            Err(why) => {
+                self.readings.warn(why.to_string());
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Shows another session in place of the present one, with the settings of the window.
+    fn replace(&mut self, next: Self) {
+        let former = std::mem::replace(self, next);
+        let dark = former.runs.panes[0].show.dark;
+        looks::each(&mut self.runs.panes, |show| show.dark = dark);
+        self.panel = former.panel;
+        (self.panel.pane, self.panel.typed) = (0, None);
+        self.panel.editor.forget(&self.runs);
+        self.pulled = former.pulled;
+        self.measuring.answerer = former.measuring.answerer;
+        self.scenes.adopt(former.scenes);
+        self.readings.in_window = former.readings.in_window;
+        self.readings.touch = former.readings.touch;
+        self.readings.film = former.readings.film;
+    }
+
+    /// Shows the present scene as it was edited, or without edits, unless it is shown so already.
+    /// Fails if such a scene cannot be built.
+    pub fn show_edited(&mut self, edited: Option<&Description>) -> Result<(), String> {
+        let own = self.scenes.unedited();
+        let next = match edited {
+            Some(description) => Origin {
+                source: own.source.described(description.clone()),
+                grid: None,
+                edited: true,
+                ..own
+            },
+            None => own,
+        };
+        let shown = &self.scenes.shown;
+        if next.source.description == shown.source.description && next.edited == shown.edited {
+            return Ok(());
+        }
+        let setup = next.build().map_err(|error| error.to_string())?;
+        self.scenes.shown = next;
+        self.set_scene(&setup);
+        Ok(())
+    }
+
+    /// Removes the ruler of the former scene and, if the plots are open, plots what moves alone.
+    pub fn begin_plots(&mut self) {
+        self.panel.plotting.ruler = None;
+        if self.panel.has(RunAction::Plots) {
+            plotting::pick_first(&mut self.runs.panes);
+        }
+    }
 }
 
 /// Returns whether surfaces of a run cross.
-fn crosses(run: &Simulation) -> bool {
+pub(super) fn crosses(run: &Simulation) -> bool {
     run.model().network().is_some_and(|network| {
         let (x, _) = network.halves(run.state());
         !network.crossed(run.time(), x).is_empty()
@@ -488,94 +679,4 @@ fn apart(session: &Session, run: &Simulation) -> Result<Checkpoint, String> {
     state.y = setup.scene.state;
     moment.touching = true;
     Ok(moment)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::session::panel;
-    use crate::session::{RunAction, frames, session};
-
-    /// Returns whether surfaces cross in any run.
-    fn crosses(session: &Session) -> bool {
-        session.runs.all().any(super::crosses)
-    }
-
-    /// Returns the places (m) of all particles of the first run.
-    fn places(session: &Session) -> Vec<f64> {
-        let run = session.runs.first();
-        run.state()[..3 * run.particles()].to_vec()
-    }
-
-    /// A file whose surfaces begin crossed opens all the same, and key x brings them apart, which
-    /// can be undone and done again.
-    #[test]
-    fn a_tangled_scene_opens_and_comes_apart() {
-        let folder = tempfile::tempdir().unwrap();
-        let tangled = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../docs/scenes/tangled.toml"
-        );
-        let text = std::fs::read_to_string(tangled).unwrap();
-        let text = text.replace("untangle = true\n", "");
-        let path = folder.path().join("crossed.toml");
-        std::fs::write(&path, &text).unwrap();
-        let first = session(&["--scene", path.to_str().unwrap()]);
-        let mut dropped = session(&["--scene", "flag"]);
-        assert!(dropped.open(&path));
-        for mut session in [Box::new(first), Box::new(dropped)] {
-            session.readings.in_window = true;
-            assert!(session.readings.offers_apart && !session.runs.first().touching());
-            assert_eq!(session.tuning.defaults.duration, Some(1.0));
-            assert!(session.readings.paused);
-            session.act(RunAction::Pause, 0);
-            frames(&mut session, 0.05);
-            let before = places(&session);
-            assert!(crosses(&session));
-            session.act(RunAction::Touch, 0);
-            let after = places(&session);
-            assert!(session.runs.first().touching() && !crosses(&session));
-            assert!(!session.readings.offers_apart);
-            // A particle moves by half an edge at most, and velocities stay.
-            let moved = after.iter().zip(&before).map(|(a, b)| (a - b).abs());
-            let farthest = moved.fold(0.0, f64::max);
-            assert!(farthest > 0.01 && farthest < 0.5, "{farthest} m");
-            panel::undo(&mut session, false);
-            assert_eq!(places(&session), before);
-            assert!(!session.runs.first().touching());
-            panel::undo(&mut session, true);
-            assert_eq!(places(&session), after);
-            frames(&mut session, 0.1);
-            let run = session.runs.first();
-            let lost = run.blow_up().map(|lost| lost.to_string());
-            assert!(run.touching() && !crosses(&session), "{lost:?}");
-        }
-    }
-
-    /// Surfaces that crossed while they did not touch are offered to come apart in every run.
-    #[test]
-    fn what_crossed_in_motion_comes_apart_in_every_run() {
-        let mut session = crate::session::compared(&["r", "v", "--scene", "mit"], 0.1);
-        // An edge at a corner comes to stand in the middle of the cloth.
-        let (n, mut moment) = (225, session.runs.first().moment());
-        for (i, up) in [(n - 1, 0.3), (n - 2, -0.3)] {
-            for (axis, by) in [-1.1, up, -1.2].into_iter().enumerate() {
-                moment.run.y[axis * n + i] += by;
-            }
-        }
-        session.return_to(&[Some(moment.clone()), Some(moment.clone()), Some(moment)]);
-        assert!(crosses(&session));
-        session.act(RunAction::Touch, 0);
-        let said = session.readings.message.clone().unwrap();
-        assert!(said.starts_with("Surfaces that cross cannot"), "{said}");
-        session.act(RunAction::Touch, 0);
-        let said = session.readings.message.clone().unwrap();
-        assert!(!crosses(&session), "{said}");
-        assert!(session.runs.all().all(Simulation::touching));
-        // After a reset, the states are another run's: only self-collision is undone.
-        session.act(RunAction::Reset, 0);
-        panel::undo(&mut session, false);
-        assert_eq!(session.runs.first().time(), 0.0);
-        assert!(!session.runs.all().any(Simulation::touching));
-    }
 }

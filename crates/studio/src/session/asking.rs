@@ -9,8 +9,7 @@ use a3_files::setup::{Request, SceneOptions};
 use a3_scenes::snapshot;
 
 use super::action::{MeasureRequest, RunAction};
-use super::panes;
-use super::question::{MethodSetting, Question, Task};
+use super::measuring::{MethodSetting, Question, Task};
 use super::save;
 use super::state::Session;
 
@@ -46,13 +45,13 @@ pub fn apply(session: &mut Session, request: MeasureRequest, at: usize) -> bool 
         MeasureRequest::FromStart(from_start) => measuring.from_start = from_start,
         MeasureRequest::Use(row) => {
             if let Some(setting) = offer(session, row) {
-                panes::set(session, at, setting);
+                session.use_setting(at, setting);
             }
         }
         MeasureRequest::RowBeside(row) => {
             let setting = offer(session, row);
             return setting.is_some_and(|it| {
-                let added = panes::add(session, at, it);
+                let added = session.add_pane(at, it);
                 session.report(added)
             });
         }
@@ -61,7 +60,7 @@ pub fn apply(session: &mut Session, request: MeasureRequest, at: usize) -> bool 
             let diagram = answer.and_then(|answer| answer.as_ref().ok()?.diagram.as_ref());
             let setting = diagram.and_then(|it| it.runs.get(curve)?.get(run).copied());
             return setting.is_some_and(|it| {
-                let added = panes::add(session, at, it);
+                let added = session.add_pane(at, it);
                 session.report(added)
             });
         }
@@ -152,7 +151,7 @@ mod tests {
     use a3_scenes::{Description, regridded};
 
     use super::*;
-    use crate::session::question::{Answer, Diagram};
+    use crate::session::measuring::{Answer, Diagram};
     use crate::session::{RunAction, frames, session};
 
     /// Returns the scene that would be measured.

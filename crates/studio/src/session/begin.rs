@@ -8,10 +8,9 @@ use a3_files::scene_file::Source;
 use a3_files::setup::{Request, find};
 use a3_media::show::{check_drawing, check_particle};
 
-use super::opening::Opening;
 use super::origin::{Origin, begins_crossed};
-use super::state::{Beginning, Session};
-use super::words::read;
+use super::state::Session;
+use super::words::{Opening, read};
 
 /// Creates the session of a window on one run, or on several side by side. Fails if an option does
 /// not fit the scene.
@@ -84,7 +83,7 @@ fn alone(
     check_drawing(&simulation, opening.manner, false)?;
     let mut origin = origin(request, opening);
     origin.crossed = crossed && !opening.no_contact;
-    let mut session = Session::new(origin, &setup, vec![simulation], &beginning(opening))?;
+    let mut session = Session::new(origin, &setup, vec![simulation], opening)?;
     let is_asked = step.is_some() || opening.resume.is_some();
     let names_none = session.scenes.shown.source.description.step.is_none();
     if !is_asked
@@ -108,14 +107,7 @@ fn beside(request: Request, opening: &Opening) -> Result<Session, Failure> {
     let simulations = simulations.collect::<Result<Vec<_>, Failure>>()?;
     check_drawing(&simulations[0], opening.manner, true)?;
     let origin = origin(request, opening);
-    Session::new(origin, &setup, simulations, &beginning(opening))
-}
-
-fn beginning(opening: &Opening) -> Beginning {
-    Beginning {
-        manner: opening.manner,
-        paused: opening.paused,
-    }
+    Session::new(origin, &setup, simulations, opening)
 }
 
 /// Returns a run that begins with or without self-collision, as the options say.

@@ -5,12 +5,12 @@ use a3_files::rounding::short;
 /// The values that a knob can have.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DialScale {
-    /// Values at equal steps.
-    Linear { from: f64, to: f64, step: f64 },
-    /// Values at ten steps per decade.
-    Log { from: f64, to: f64 },
-    /// Whole numbers.
-    Whole { from: f64, to: f64 },
+    /// Values between two ends, at equal steps.
+    Linear([f64; 2], f64),
+    /// Values between two ends, at ten steps per decade.
+    Log([f64; 2]),
+    /// Whole numbers between two ends.
+    Whole([f64; 2]),
     /// A cycle of values.
     Choice(Vec<f64>),
     /// 0 (off) or 1 (on).
@@ -27,6 +27,19 @@ pub struct Dial {
     pub scale: DialScale,
     /// The present value in words.
     pub words: String,
+}
+
+impl Dial {
+    /// Creates a dial.
+    pub fn new(value: f64, own: f64, scale: DialScale, words: impl Into<String>) -> Self {
+        let words = words.into();
+        Self {
+            value,
+            own,
+            scale,
+            words,
+        }
+    }
 }
 
 /// A turn of a knob.
@@ -49,10 +62,8 @@ impl DialScale {
     /// Returns the position of a value on the scale, from 0 to 1.
     pub fn share(&self, value: f64) -> f64 {
         let share = match self {
-            Self::Linear { from, to, .. } | Self::Whole { from, to } => {
-                (value - from) / (to - from)
-            }
-            Self::Log { from, to } => (value / from).ln() / (to / from).ln(),
+            Self::Linear([from, to], _) | Self::Whole([from, to]) => (value - from) / (to - from),
+            Self::Log([from, to]) => (value / from).ln() / (to / from).ln(),
             Self::Choice(values) => {
                 let at = values.iter().position(|v| *v == value);
                 at.unwrap_or(0) as f64 / values.len() as f64
@@ -66,8 +77,8 @@ impl DialScale {
     pub fn at(&self, share: f64) -> f64 {
         let share = share.clamp(0.0, 1.0);
         match self {
-            Self::Linear { from, to, .. } | Self::Whole { from, to } => from + share * (to - from),
-            Self::Log { from, to } => from * (to / from).powf(share),
+            Self::Linear([from, to], _) | Self::Whole([from, to]) => from + share * (to - from),
+            Self::Log([from, to]) => from * (to / from).powf(share),
             Self::Choice(values) => {
                 values[((share * values.len() as f64) as usize).min(values.len() - 1)]
             }
@@ -78,11 +89,12 @@ impl DialScale {
     /// Rounds a value to the nearest one of the scale, with few digits.
     pub fn nearest(&self, value: f64) -> f64 {
         match self {
-            Self::Linear { from, to, step } => {
-                short(multiple(value, 0.1 * step).clamp(*from, *to), 6)
+            Self::Linear([from, to], step) => {
+                let step = 0.1 * step;
+                short(((value / step).round() * step).clamp(*from, *to), 6)
             }
-            Self::Log { from, to } => short(value, 3).clamp(*from, *to),
-            Self::Whole { from, to } => value.round().clamp(*from, *to),
+            Self::Log([from, to]) => short(value, 3).clamp(*from, *to),
+            Self::Whole([from, to]) => value.round().clamp(*from, *to),
             Self::Choice(_) | Self::Switch => value,
         }
     }
@@ -90,21 +102,15 @@ impl DialScale {
     /// Returns the ends of a scale of numbers; `None` for a choice or a switch.
     pub fn ends(&self) -> Option<[f64; 2]> {
         match self {
-            Self::Linear { from, to, .. } | Self::Log { from, to } | Self::Whole { from, to } => {
-                Some([*from, *to])
-            }
+            Self::Linear(ends, _) | Self::Log(ends) | Self::Whole(ends) => Some(*ends),
             Self::Choice(_) | Self::Switch => None,
         }
     }
 
     /// Clamps a value to the scale.
     pub fn within(&self, value: f64) -> f64 {
-        match self {
-            Self::Linear { from, to, .. } | Self::Log { from, to } | Self::Whole { from, to } => {
-                value.max(*from).min(*to)
-            }
-            Self::Choice(_) | Self::Switch => value,
-        }
+        let ends = self.ends();
+        ends.map_or(value, |[from, to]| value.max(from).min(to))
     }
 
     /// Returns the next value up or down, at a multiple of the step. `other` is that of
@@ -119,17 +125,17 @@ impl DialScale {
             }
         };
         match self {
-            Self::Linear { from, to, step } => {
+            Self::Linear([from, to], step) => {
                 let step = if other { 0.1 * step } else { *step };
                 short((rung(value / step, 1e-3) * step).clamp(*from, *to), 6)
             }
-            Self::Log { from, to } => {
+            Self::Log([from, to]) => {
                 // Rounding to three digits moves a value by up to 0.002 decades.
                 let (rungs, hair) = if other { (100.0, 0.25) } else { (10.0, 0.025) };
                 let next = 10_f64.powf(rung(value.log10() * rungs, hair) / rungs);
                 short(next, 3).clamp(*from, *to)
             }
-            Self::Whole { from, to } => {
+            Self::Whole([from, to]) => {
                 let by = if other { 10.0 } else { 1.0 };
                 (value + if up { by } else { -by }).clamp(*from, *to)
             }
@@ -141,9 +147,4 @@ impl DialScale {
             Self::Switch => f64::from(u8::from(up)),
         }
     }
-}
-
-/// Returns the multiple of a step that is nearest to a value.
-fn multiple(value: f64, step: f64) -> f64 {
-    (value / step).round() * step
 }

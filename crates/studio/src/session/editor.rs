@@ -37,17 +37,45 @@ pub enum Measure {
 }
 
 impl Tool {
-    /// All tools, in the order of their buttons.
-    pub const ALL: [Self; 9] = [
-        Self::ThrowBall,
-        Self::ThrowBox,
-        Self::AddBall,
-        Self::AddBox,
-        Self::Particle,
-        Self::Spring,
-        Self::Rod,
-        Self::Rope,
-        Self::Delete,
+    /// All tools in the order of their buttons, each with its name, and how it is used.
+    pub const ALL: [(Self, &str, &str); 9] = [
+        (
+            Self::ThrowBall,
+            "throw ball",
+            "Click where the ball shall hit; drag there to throw it faster.",
+        ),
+        (
+            Self::ThrowBox,
+            "throw box",
+            "Click where the box shall hit; drag there to throw it faster.",
+        ),
+        (Self::AddBall, "ball", "Click on what the ball shall lie."),
+        (Self::AddBox, "box", "Click on what the box shall stand."),
+        (
+            Self::Particle,
+            "particle",
+            "Click where the particle shall be.",
+        ),
+        (
+            Self::Spring,
+            "spring",
+            "Drag from one particle to another to join them by a spring.",
+        ),
+        (
+            Self::Rod,
+            "rod",
+            "Drag from one particle to another to join them by a rod, whose length never changes.",
+        ),
+        (
+            Self::Rope,
+            "rope",
+            "Drag from one particle to another to join them by a rope, which only pulls.",
+        ),
+        (
+            Self::Delete,
+            "delete",
+            "Click a particle, a spring, a rod, a rope, a body or an obstacle to delete it.",
+        ),
     ];
 
     /// Returns the quantities that can be set for the tool.

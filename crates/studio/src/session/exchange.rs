@@ -8,9 +8,8 @@ use a3_core::contact::Shape;
 use a3_core::{Checkpoint, Error, Network, Path, Scene, Simulation};
 use a3_scenes::{Part, PartChange, Presentation, Splice};
 
-use super::origin::Origin;
+use super::origin::{Origin, Passage};
 use super::pane::Pane;
-use super::passage::Passage;
 use super::state::Session;
 use super::tuning::Tuning;
 
@@ -123,11 +122,8 @@ pub fn exchange(session: &mut Session, next: Former) -> Former {
     let tuning = std::mem::replace(&mut session.tuning, next.tuning);
     let origin = std::mem::replace(&mut session.scenes.shown, next.origin);
     let parts = &session.tuning.parts;
-    let names = session
-        .tuning
-        .left_out
-        .iter()
-        .map(|k| parts[*k].name.clone());
+    let left_out = session.tuning.left_out.iter();
+    let names = left_out.map(|k| parts[*k].name.clone());
     session.readings.left_out = names.collect();
     session.begin_new_run();
     Former {

@@ -108,25 +108,24 @@ impl Runs {
         refused.map_err(|why| why.to_string())
     }
 
-    /// Grabs particle i in every run, and returns whether any run allowed it.
-    pub fn grab(&mut self, i: usize) -> bool {
+    /// Grabs something in every run, and returns whether any run allowed it.
+    fn hold(&mut self, grab: impl Fn(&mut Simulation) -> bool) -> bool {
         self.align();
-        let grabbed = self
-            .running()
-            .fold(false, |held, run| held | run.grab(i).is_ok());
+        let grabbed = self.running().fold(false, |held, run| held | grab(run));
         self.touched |= grabbed;
         grabbed
+    }
+
+    /// Grabs particle i in every run, and returns whether any run allowed it.
+    pub fn grab(&mut self, i: usize) -> bool {
+        self.hold(|run| run.grab(i).is_ok())
     }
 
     /// Grabs obstacle k in every run, and returns whether any run allowed it.
     pub fn grab_obstacle(&mut self, k: usize) -> bool {
         self.align();
         self.pushed = self.obstacle_path(k).map(|path| (k, path));
-        let grabbed = self
-            .running()
-            .fold(false, |held, run| held | run.grab_obstacle(k).is_ok());
-        self.touched |= grabbed;
-        grabbed
+        self.hold(|run| run.grab_obstacle(k).is_ok())
     }
 
     /// Pulls the grabbed particle or obstacle towards the same point (m) in every run.
@@ -270,7 +269,7 @@ mod tests {
                     .runs
                     .reference
                     .as_ref()
-                    .map(|r| r.simulation().touching()),
+                    .map(|r| r.simulation.touching()),
             );
             touching
         };

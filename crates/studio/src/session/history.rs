@@ -5,8 +5,7 @@ use web_time::{Duration, Instant};
 
 use a3_core::{Checkpoint, Path};
 
-use super::origin::Origin;
-use super::passage::Passage;
+use super::origin::{Origin, Passage};
 
 /// Largest number of changes in the history.
 const MAX_CHANGES: usize = 200;

@@ -1,21 +1,13 @@
 //! The appearance of all panes: styles, colours by a quantity, and arrows.
 
 use a3_media::show::{Arrows, Quantity, Show};
-use a3_render::Style;
 
 use super::pane::Pane;
 
-/// Sets the dark or the light theme.
-pub fn set_dark(panes: &mut [Pane], dark: bool) {
+/// Changes how all panes are drawn.
+pub fn each(panes: &mut [Pane], change: impl Fn(&mut Show)) {
     for pane in panes {
-        pane.show.dark = dark;
-    }
-}
-
-/// Highlights and lists the springs of a particle; `None` ends that.
-pub fn show_springs_of(panes: &mut [Pane], particle: Option<usize>) {
-    for pane in panes {
-        pane.show.springs_of = particle;
+        change(&mut pane.show);
     }
 }
 
@@ -23,7 +15,7 @@ pub fn show_springs_of(panes: &mut [Pane], particle: Option<usize>) {
 pub fn next_style(panes: &mut [Pane]) {
     let styles = Show::styles(&panes[0].simulation);
     let next = next_after(styles, Some(panes[0].show.style));
-    set_style(panes, next.unwrap_or_default());
+    each(panes, |show| show.style = next.unwrap_or_default());
 }
 
 /// Returns whether the runs can be coloured by a quantity.
@@ -36,7 +28,7 @@ pub fn next_colour(panes: &mut [Pane]) -> String {
     let has = |quantity: &Quantity| has_quantity(panes, *quantity);
     let all: Vec<_> = Quantity::ALL.into_iter().filter(has).collect();
     let next = next_after(&all, panes[0].show.colouring.quantity);
-    set_colour(panes, next);
+    each(panes, |show| show.colouring.set_quantity(next));
     match next {
         Some(quantity) => format!("Colours show the {}.", quantity.name()),
         None => "Colours are those of the scene.".into(),
@@ -49,38 +41,10 @@ pub fn next_arrows(panes: &mut [Pane]) -> String {
     let has = |arrows: &Arrows| arrows.is_in(run);
     let all: Vec<_> = Arrows::ALL.into_iter().filter(has).collect();
     let next = next_after(&all, panes[0].show.field.arrows);
-    set_arrows(panes, next);
+    each(panes, |show| show.field.set_arrows(next));
     match next {
         Some(arrows) => format!("Arrows show the {}.", arrows.name()),
         None => "Arrows are off.".into(),
-    }
-}
-
-/// Draws all panes in a style.
-pub fn set_style(panes: &mut [Pane], style: Style) {
-    for pane in panes {
-        pane.show.style = style;
-    }
-}
-
-/// Colours all panes by a quantity, or by none.
-pub fn set_colour(panes: &mut [Pane], quantity: Option<Quantity>) {
-    for pane in panes {
-        pane.show.colouring.set_quantity(quantity);
-    }
-}
-
-/// Draws arrows in all panes, or none.
-pub fn set_arrows(panes: &mut [Pane], arrows: Option<Arrows>) {
-    for pane in panes {
-        pane.show.field.set_arrows(arrows);
-    }
-}
-
-/// Fixes the upper end of the colour scale in all panes; `None` lets it follow the values.
-pub fn fix_scale(panes: &mut [Pane], end: Option<f64>) {
-    for pane in panes {
-        pane.show.colouring.scale.fixed = end;
     }
 }
 
@@ -93,6 +57,8 @@ fn next_after<T: Copy + PartialEq>(all: &[T], now: Option<T>) -> Option<T> {
 
 #[cfg(test)]
 mod tests {
+    use a3_render::Style;
+
     use super::*;
     use crate::session::{RunAction, compared, session};
 

@@ -12,7 +12,7 @@ use a3_render::Topology;
 use a3_scenes::{Defaults, Presentation, Splice};
 use web_time::{Duration, Instant};
 
-use super::samples::Samples;
+use super::rows::Samples;
 use super::traces::Traces;
 
 /// Simulated time that an adaptive method advances at a time (s).
@@ -211,7 +211,8 @@ impl Pane {
 
     /// Restarts all measurements, because the forces of the scene have changed.
     pub fn forces_changed(&mut self) {
-        self.limit.expire();
+        // The next update estimates again.
+        self.limit.next = None;
         self.restart_cost();
     }
 
@@ -326,23 +327,15 @@ const MIN_GROWTH_RATIO: f64 = 0.01;
 pub struct LimitWatch {
     fastest: LargestMode,
     modes: Vec<Mode>,
-    limit: Option<Limit>,
+    /// The latest estimate of the limit.
+    pub limit: Option<Limit>,
     next: Option<Instant>,
-    sought: Option<Sought>,
+    /// The result of the search for a step or a tolerance with which the diverged run would have
+    /// held.
+    pub sought: Option<Sought>,
 }
 
 impl LimitWatch {
-    /// Returns the latest estimate of the limit, if there is one.
-    pub fn limit(&self) -> Option<Limit> {
-        self.limit
-    }
-
-    /// Returns the result of the search for a step or a tolerance with which the diverged run would
-    /// have held.
-    pub fn sought(&self) -> Option<Sought> {
-        self.sought
-    }
-
     /// Returns the time (s) in which the motion of the mode that sets the limit grows tenfold in
     /// steps of h (s) of a method; `None` if it does not grow.
     pub fn tenfold_time(&self, method: &Method, h: f64) -> Option<f64> {
@@ -406,11 +399,6 @@ impl LimitWatch {
         }
     }
 
-    /// Makes the next update estimate again, because the forces have changed.
-    pub fn expire(&mut self) {
-        self.next = None;
-    }
-
     /// Computes the limit of another method from the last modes.
     pub fn set_method(&mut self, method: &Method) {
         // Fails for a damped mode if the method cannot integrate damped springs.
@@ -435,7 +423,7 @@ mod tests {
             assert!(run.advance_to(10.0).is_err());
             let mut watch = LimitWatch::default();
             watch.update(&run);
-            watch.sought().unwrap()
+            watch.sought.unwrap()
         });
         // The suggested step does not depend on the step that was too long.
         let step = 0.003;
@@ -450,26 +438,26 @@ mod tests {
         let method = |name| integrators::find(name).unwrap();
         let mut run = Simulation::new(scene, method("rk4"), Control::Step(0.01)).unwrap();
         let mut watch = LimitWatch::default();
-        assert_eq!(watch.limit(), None);
+        assert_eq!(watch.limit, None);
         watch.update(&run);
-        let flat = watch.limit().unwrap().step;
+        let flat = watch.limit.unwrap().step;
         assert!((flat - 0.0349).abs() < 0.001, "{flat}");
         run.advance_to(1.5).unwrap();
         // Too early for another estimate.
         watch.update(&run);
-        assert_eq!(watch.limit().unwrap().step, flat);
+        assert_eq!(watch.limit.unwrap().step, flat);
         for _ in 0..8 {
             watch.next = None;
             watch.update(&run);
         }
-        let stretched = watch.limit().unwrap().step;
+        let stretched = watch.limit.unwrap().step;
         assert!(
             stretched < 0.985 * flat && stretched > 0.9 * flat,
             "{stretched}"
         );
         watch.set_method(method("implicit"));
-        assert!(watch.limit().unwrap().step.is_infinite());
+        assert!(watch.limit.unwrap().step.is_infinite());
         watch.set_method(method("trapezoid"));
-        assert!(watch.limit().unwrap().step < 0.3 * flat);
+        assert!(watch.limit.unwrap().step < 0.3 * flat);
     }
 }

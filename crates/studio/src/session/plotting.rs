@@ -81,10 +81,8 @@ pub fn pick_first(panes: &mut [Pane]) {
 fn few(run: &Simulation) -> Vec<Pick> {
     let network = run.model().network();
     let is_free = |i: &usize| network.is_none_or(|network| !network.is_pinned(*i));
-    let mut picks: Vec<_> = (0..run.particles())
-        .filter(is_free)
-        .map(|i| Pick::at(run, i))
-        .collect();
+    let free = (0..run.particles()).filter(is_free);
+    let mut picks: Vec<_> = free.map(|i| Pick::at(run, i)).collect();
     picks.dedup();
     if picks.len() > FEW {
         picks.clear();
@@ -130,7 +128,7 @@ fn fires(panes: &[Pane], trigger: Trigger) -> bool {
 
 /// Returns the trigger of a section of what is plotted: the present one, unless it takes no points.
 pub fn fitting_trigger(panes: &[Pane], across: Variable) -> Trigger {
-    let present = panes[0].traces.trigger();
+    let present = panes[0].traces.trigger;
     if fires(panes, present) {
         present
     } else {
@@ -158,7 +156,7 @@ fn fit(settings: &mut PlotSettings, panes: &mut [Pane]) {
     let axes = axes(settings, panes);
     settings.take_axes(axes, &panes[0].simulation.scene().name);
     let trigger = fitting_trigger(panes, axes[0].variable);
-    if settings.mode == Mode::Section && trigger != panes[0].traces.trigger() {
+    if settings.mode == Mode::Section && trigger != panes[0].traces.trigger {
         set_trigger(panes, trigger);
     }
 }
@@ -502,7 +500,7 @@ mod tests {
     fn a_section_has_a_trigger_of_what_is_plotted() {
         let mut session = session(&["r", "0.002", "--scene", "double-pendulum"]);
         pick_first(&mut session.runs.panes);
-        let trigger = |session: &Session| session.runs.panes[0].traces.trigger();
+        let trigger = |session: &Session| session.runs.panes[0].traces.trigger;
         assert_eq!(trigger(&session), Trigger::Off);
         ask(&mut session, [PlotRequest::Mode(Mode::Section)]);
         assert_eq!(trigger(&session), Trigger::Rises(Variable::VelocityY, 0.0));

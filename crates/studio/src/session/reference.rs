@@ -3,16 +3,14 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
-use std::thread;
-use std::thread::JoinHandle;
+use std::thread::{self, JoinHandle};
 
 use a3_core::accuracy::horizon;
-use a3_core::{Control, Method, Scene, Simulation, integrators};
+use a3_core::{Control, Error, Method, Progress, Scene, Simulation, integrators};
 use a3_files::failure::Failure;
 use a3_files::progress;
 use web_time::{Duration, Instant};
 
-use super::continued::continue_from;
 use super::pane::{ADAPTIVE_SLICE, Pane};
 
 /// Largest number of consecutive frames for which the reference may be late; then it is stopped.
@@ -20,13 +18,14 @@ const MAX_LATE_FRAMES: u32 = 30;
 
 /// A run of the panes' scene that is much more accurate, with the same interaction.
 pub struct ReferenceRun {
-    simulation: Simulation,
+    /// The run, even if it was stopped.
+    pub simulation: Simulation,
     /// Search for the time until which errors are meaningful, from the initial state of the scene.
     predictability: Predictability,
     /// Number of consecutive frames in which the reference was late.
     late: u32,
     /// Reason why the reference was stopped, if it was.
-    stopped: Option<&'static str>,
+    pub stopped: Option<&'static str>,
 }
 
 /// Returns the method and tolerance of the reference: 1e-10, or 1e-4 times the tightest tolerance
@@ -77,16 +76,6 @@ impl ReferenceRun {
         Some(&mut self.simulation).filter(|_| self.stopped.is_none())
     }
 
-    /// Returns the run, even if it was stopped.
-    pub fn simulation(&self) -> &Simulation {
-        &self.simulation
-    }
-
-    /// Returns the run for a change, even if it was stopped.
-    pub fn simulation_mut(&mut self) -> &mut Simulation {
-        &mut self.simulation
-    }
-
     /// Replaces the run by one of a changed scene with the same particles, which goes on from the
     /// same state, and returns the former run. The search for the time until which errors are
     /// meaningful starts again.
@@ -98,11 +87,6 @@ impl ReferenceRun {
     /// Continues from the state of a run.
     pub fn continue_from(&mut self, run: &Simulation) -> Result<(), Failure> {
         continue_from(&mut self.simulation, run).map_err(Failure::run)
-    }
-
-    /// Returns the reason why the reference was stopped, if it was.
-    pub fn stopped(&self) -> Option<&'static str> {
-        self.stopped
     }
 
     /// Returns the time past which errors say little (s), if one is known.
@@ -245,6 +229,23 @@ impl Drop for Predictability {
     }
 }
 
+/// Continues a fresh run of the same scene from the state of another run, by its own method.
+///
+/// # Errors
+/// The method does not support the present scene of that run.
+pub fn continue_from(next: &mut Simulation, run: &Simulation) -> Result<(), Error> {
+    let (method, control) = (next.method(), next.control());
+    let mut moment = run.moment();
+    let time = moment.time();
+    let state = &mut moment.run;
+    (state.method, state.control) = (method, control);
+    (state.since, state.taken, state.shown) = (time, 0, None);
+    moment.progress = Progress::default();
+    next.restore(&moment)?;
+    // Energy of another model is no gain of the method.
+    next.set_method(method, control)
+}
+
 #[cfg(test)]
 mod tests {
     use a3_media::show::{Manner, Show};
@@ -279,15 +280,15 @@ mod tests {
         assert!(panes[0].error.unwrap() > panes[1].error.unwrap());
         for late in 1..=MAX_LATE_FRAMES + 1 {
             go(&mut panes, 0.5 + 0.01 * f64::from(late));
-            assert_eq!(reference.stopped(), None);
+            assert_eq!(reference.stopped, None);
             reference.follow(&mut panes, Duration::ZERO);
         }
-        assert!(reference.stopped().unwrap().contains("too slow"));
+        assert!(reference.stopped.unwrap().contains("too slow"));
         assert_eq!(panes[0].error, None);
         panes.iter_mut().for_each(Pane::reset);
         reference.reset();
         go(&mut panes, 0.5);
         reference.follow(&mut panes, Duration::MAX);
-        assert!(panes[0].error.is_some() && reference.stopped().is_none());
+        assert!(panes[0].error.is_some() && reference.stopped.is_none());
     }
 }

@@ -9,7 +9,7 @@ use a3_media::show::Quantity;
 use a3_scenes::{Defaults, Setup};
 use web_time::{Duration, Instant};
 
-use super::pane::{ADAPTIVE_SLICE, Pane};
+use super::pane::Pane;
 use super::reference::ReferenceRun;
 
 /// Longest real time of the steps that a key causes.
@@ -65,13 +65,13 @@ impl Runs {
     /// Returns all runs, the reference last.
     pub fn all(&self) -> impl Iterator<Item = &Simulation> {
         let panes = self.panes.iter().map(|pane| &pane.simulation);
-        panes.chain(self.reference.as_ref().map(ReferenceRun::simulation))
+        panes.chain(self.reference.iter().map(|it| &it.simulation))
     }
 
     /// Returns all runs for a change, including diverged and stopped ones, the reference last.
     pub(super) fn all_mut(&mut self) -> impl Iterator<Item = &mut Simulation> {
         let panes = self.panes.iter_mut().map(|pane| &mut pane.simulation);
-        panes.chain(self.reference.as_mut().map(ReferenceRun::simulation_mut))
+        panes.chain(self.reference.iter_mut().map(|it| &mut it.simulation))
     }
 
     /// Advances all panes to a simulated time (s) in short slices, so that none is ahead of the
@@ -95,13 +95,6 @@ impl Runs {
         for pane in &mut self.panes {
             pane.follow();
         }
-    }
-
-    /// Returns the longest step of the panes that have not diverged (s).
-    pub(super) fn longest_step(&self) -> f64 {
-        let alive = self.panes.iter().filter(|pane| pane.alive());
-        let step = alive.map(|pane| pane.simulation.step_size().unwrap_or(ADAPTIVE_SLICE));
-        step.fold(0.0, f64::max)
     }
 
     /// Advances all runs to exactly `time` (s), however long that takes.

@@ -25,13 +25,8 @@ pub fn write_scene(session: &Session, run: &Simulation) -> Result<String, String
             "a scene file has at most {MAX_PARTICLES} particles, but this run has {particles}"
         ));
     }
-    let folder = session
-        .scenes
-        .shown
-        .source
-        .path
-        .as_deref()
-        .and_then(Path::parent);
+    let path = session.scenes.shown.source.path.as_deref();
+    let folder = path.and_then(Path::parent);
     let name = &run.scene().name;
     let write = || -> Result<PathBuf, Failure> {
         let text = scene_text(session, run).map_err(Failure::run)?;
@@ -70,11 +65,7 @@ pub fn description(session: &Session, run: &Simulation) -> Description {
     let tuning = &session.tuning;
     let parts: Vec<_> = tuning.left_out.iter().map(|k| &tuning.parts[*k]).collect();
     let mut description = session.scenes.shown.described_without(&parts);
-    snapshot::scale_springs(
-        &mut description,
-        session.tuning.stiffness,
-        session.tuning.damping,
-    );
+    snapshot::scale_springs(&mut description, tuning.stiffness, tuning.damping);
     snapshot::scale_wind(&mut description, session.tuning.gusts);
     snapshot::begin_with(&mut description, run.model(), &run.moment());
     let triple = |p: nalgebra::Point3<f32>| [p.x, p.y, p.z].map(shortest);

@@ -40,13 +40,13 @@ pub struct Reloaded {
 impl Scenes {
     /// Creates the list of the built-in scenes and the first scene of the session.
     pub fn new(origin: Origin) -> Self {
+        let typed = &origin.source.typed;
+        let mut table = a3_scenes::SCENES.iter();
+        let number = table.position(|entry| entry.name == *typed).unwrap_or(0);
         Self {
             begun: origin.source.typed.clone(),
             offered: None,
-            number: a3_scenes::SCENES
-                .iter()
-                .position(|entry| entry.name == origin.source.typed)
-                .unwrap_or(0),
+            number,
             shown: origin.clone(),
             asked: vec![origin],
             recent: vec![],
@@ -58,9 +58,7 @@ impl Scenes {
     pub fn unedited(&self) -> Origin {
         let shown = &self.shown;
         let typed = &shown.source.typed;
-        let asked = || self.asked(typed).cloned();
-        let found = || Origin::find(typed).ok();
-        let before = shown.edited.then(|| asked().or_else(found)).flatten();
+        let before = shown.edited.then(|| self.origin(typed).ok()).flatten();
         before.unwrap_or_else(|| shown.clone())
     }
 
@@ -100,15 +98,19 @@ impl Scenes {
         let files = self.asked.iter().map(|origin| &origin.source);
         let files = files.filter(|source| source.path.is_some());
         let table = a3_scenes::SCENES.iter().map(|entry| entry.name.to_owned());
-        files
-            .map(|source| source.typed.clone())
-            .chain(table)
-            .collect()
+        let files = files.map(|source| source.typed.clone());
+        files.chain(table).collect()
     }
 
     /// Returns the scene of the command line or the opened file with this name.
     fn asked(&self, name: &str) -> Option<&Origin> {
         self.asked.iter().find(|it| it.source.typed == name)
+    }
+
+    /// Returns the scene of this name, as it was asked for or as it is found.
+    fn origin(&self, name: &str) -> Result<Origin, InputError> {
+        let asked = self.asked(name).cloned();
+        asked.map_or_else(|| Origin::find(name), Ok)
     }
 
     /// Returns the absolute paths of the user's files, the most recent first.
@@ -122,10 +124,8 @@ impl Scenes {
     /// Returns the files of earlier windows that still exist and were not opened in this one.
     fn earlier_files(&self) -> Vec<PathBuf> {
         let now: Vec<_> = self.files().collect();
-        let earlier = self
-            .recent
-            .iter()
-            .filter(|path| !now.contains(*path) && path.is_file());
+        let earlier = self.recent.iter();
+        let earlier = earlier.filter(|path| !now.contains(*path) && path.is_file());
         earlier.cloned().collect()
     }
 
@@ -184,11 +184,9 @@ impl Scenes {
         let names = self.names();
         let unknown = || InputError::Unknown("There is no such scene.".into());
         let name = names.get(number).ok_or_else(unknown)?;
-        let asked = self.asked(name).cloned();
-        let mut origin = asked.map_or_else(|| Origin::find(name), Ok)?;
+        let mut origin = self.origin(name)?;
         let setup = origin.begin()?;
-        self.shown = origin;
-        self.number = number;
+        (self.shown, self.number) = (origin, number);
         Ok(setup)
     }
 
@@ -197,9 +195,7 @@ impl Scenes {
     pub fn setup(&self, number: usize) -> Option<Setup> {
         let names = self.names();
         let name = names.get(number)?;
-        let asked = self.asked(name).cloned();
-        let origin = asked.map_or_else(|| Origin::find(name), Ok);
-        origin.ok()?.build().ok()
+        self.origin(name).ok()?.build().ok()
     }
 
     /// Builds the scene of a file, and makes it the present one. Fails if the file cannot be read

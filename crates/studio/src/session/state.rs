@@ -4,7 +4,7 @@
 
 use a3_core::{Checkpoint, Error, Simulation};
 use a3_files::failure::Failure;
-use a3_media::show::{Manner, Show};
+use a3_media::show::Show;
 use a3_scenes::Setup;
 use web_time::{Duration, Instant};
 
@@ -18,8 +18,9 @@ use super::reference::ReferenceRun;
 use super::runs::{KEY_BUDGET, Runs};
 use super::scenes::Scenes;
 use super::timeline::{Timeline, TimelinePosition};
-use super::tuning::{PanelState, Tuning};
+use super::tuning::{DEFAULT_FILM_SECONDS, PanelState, Tuning};
 use super::view::View;
+use super::words::Opening;
 
 /// Computing time of the steps of a frame: the larger of a fixed time and a share of the frame's
 /// real time, so that steps may take as long as a slow display. Steps beyond it are dropped, and
@@ -40,15 +41,6 @@ const MAX_FRAME_TIME: f64 = 0.3;
 const STEPS_BEFORE_BLOW_UP: f64 = 60.0;
 /// Longest real time in which these steps are taken again to record them.
 const MAX_TIME_AGAIN: Duration = Duration::from_secs(1);
-
-/// Initial settings of a session.
-#[derive(Clone, Copy, Default)]
-pub struct Beginning {
-    /// How the runs are drawn.
-    pub manner: Manner,
-    /// Whether the runs are paused.
-    pub paused: bool,
-}
 
 /// One visible run, or several of one scene side by side.
 pub struct Session {
@@ -87,16 +79,11 @@ impl Session {
         origin: Origin,
         setup: &Setup,
         simulations: Vec<Simulation>,
-        beginning: &Beginning,
+        opening: &Opening,
     ) -> Result<Self, Failure> {
-        let panes: Vec<_> = simulations
-            .into_iter()
-            .map(|run| {
-                let presentation = setup.presentation.clone();
-                let show = Show::new(presentation, beginning.manner);
-                Pane::new(run, show)
-            })
-            .collect();
+        let show = || Show::new(setup.presentation.clone(), opening.manner);
+        let panes = simulations.into_iter().map(|run| Pane::new(run, show()));
+        let panes: Vec<_> = panes.collect();
         Ok(Self {
             view: View::new(panes[0].show.camera()),
             runs: Runs::new(panes)?,
@@ -105,10 +92,13 @@ impl Session {
             tuning: Tuning::of(&origin, setup),
             scenes: Scenes::new(origin),
             measuring: Measuring::default(),
-            panel: PanelState::default(),
+            panel: PanelState {
+                film_seconds: DEFAULT_FILM_SECONDS,
+                ..PanelState::default()
+            },
             list: None,
             readings: Readings {
-                paused: beginning.paused,
+                paused: opening.paused,
                 ..Readings::default()
             },
             meter: Meter::new(),
@@ -199,7 +189,8 @@ impl Session {
             return;
         };
         if self.taken_again.replace(time) == Some(time) {
-            return self.timeline.mark_blow_up();
+            self.timeline.blew_up = true;
+            return;
         }
         let (begun, alive) = (Instant::now(), self.runs.count_alive());
         let from = time - STEPS_BEFORE_BLOW_UP * step;
@@ -211,7 +202,7 @@ impl Session {
             self.runs.advance(next, KEY_BUDGET, KEY_BUDGET);
         }
         if self.runs.count_alive() == alive {
-            self.timeline.mark_blow_up();
+            self.timeline.blew_up = true;
         }
     }
 
@@ -240,18 +231,15 @@ impl Session {
     /// advances.
     pub fn count_frame(&mut self, drawing: Duration) {
         if !self.animated() {
-            (self.readings.factor, self.readings.rate) = (0.0, 0.0);
+            let rates = &mut self.readings.rates;
+            (rates.factor, rates.rate) = (0.0, 0.0);
             self.meter = Meter::new();
             return;
         }
-        let Some(rates) = self.meter.count_frame(drawing) else {
-            return;
-        };
-        self.readings.rate = rates.rate;
-        self.readings.factor = rates.factor;
-        self.readings.simulating = rates.simulating;
-        self.readings.drawing = rates.drawing;
-        self.runs.panes.iter_mut().for_each(Pane::read_cost);
+        if let Some(rates) = self.meter.count_frame(drawing) {
+            self.readings.rates = rates;
+            self.runs.panes.iter_mut().for_each(Pane::read_cost);
+        }
     }
 
     /// Restarts all measurements and drops due steps, after a time in which nothing was simulated.
@@ -350,6 +338,7 @@ pub struct Meter {
 }
 
 /// Means over the frames since the last reading.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Rates {
     /// Frames per second.
     pub rate: f32,
@@ -357,7 +346,7 @@ pub struct Rates {
     pub factor: f32,
     /// Time a frame spends on steps (ms).
     pub simulating: f32,
-    /// Time a frame spends on drawing (ms).
+    /// Time for drawing a frame, and waiting for the screen (ms).
     pub drawing: f32,
 }
 
@@ -431,14 +420,8 @@ pub struct Readings {
     pub help: bool,
     /// Whether the window asks if it should close.
     pub asks_to_quit: bool,
-    /// Simulated time over real time.
-    pub factor: f32,
-    /// Frames per second.
-    pub rate: f32,
-    /// Computing time of the steps of a frame (ms).
-    pub simulating: f32,
-    /// Time for drawing a frame, and waiting for the screen (ms).
-    pub drawing: f32,
+    /// Rates of frames and of the simulation.
+    pub rates: Rates,
     /// Message that is shown.
     pub message: Option<String>,
     /// Time when the message disappears; `None` if it stays.
@@ -501,7 +484,7 @@ impl Readings {
 
     /// Updates the errors of the panes from the reference, if there is one.
     pub(super) fn read_reference(&mut self, reference: Option<&ReferenceRun>) {
-        self.no_error = reference.and_then(ReferenceRun::stopped);
+        self.no_error = reference.and_then(|it| it.stopped);
         self.predictable = reference.and_then(ReferenceRun::predictable);
     }
 }

@@ -18,7 +18,7 @@ pub struct Timeline {
     /// Index of the chosen moment; `None` for the newest.
     shown: Option<usize>,
     /// Whether a run blew up after the newest moment.
-    blew_up: bool,
+    pub blew_up: bool,
 }
 
 /// The states of all runs at one time; `None` for a run that had diverged.
@@ -52,11 +52,6 @@ impl Timeline {
     pub fn forget_after(&mut self, clock: f64) {
         rows::forget_after(&mut self.moments, clock);
         (self.shown, self.blew_up) = (None, false);
-    }
-
-    /// Notes that a run blew up after the newest moment.
-    pub fn mark_blow_up(&mut self) {
-        self.blew_up = true;
     }
 
     /// Returns the states of all runs at the last moment before a time (s), or else at the oldest;

@@ -8,7 +8,6 @@ use a3_scenes::{Defaults, Part, PartChange, Setup};
 use super::action::RunAction;
 use super::editor::Editor;
 use super::lessons::Lessons;
-use super::list::Topic;
 use super::origin::Origin;
 use super::traces::PlotSettings;
 
@@ -60,6 +59,7 @@ impl Tuning {
 pub const DEFAULT_FILM_SECONDS: f64 = 5.0;
 
 /// State of the panel, except the settings of runs, and of the pane of lessons.
+#[derive(Default)]
 pub struct PanelState {
     /// What is open beside the picture, by the action that opens it: the panel, the measurements,
     /// the lessons or the plots.
@@ -92,27 +92,6 @@ pub struct PanelState {
     pub editor: Editor,
 }
 
-impl Default for PanelState {
-    fn default() -> Self {
-        Self {
-            beside: None,
-            lessons: Lessons::default(),
-            hidden: Hidden::default(),
-            plotting: PlotSettings::default(),
-            row: 0,
-            dark: None,
-            typed: None,
-            all_marked: false,
-            material: None,
-            frame_limit: 0,
-            film: Ending::default(),
-            film_seconds: DEFAULT_FILM_SECONDS,
-            pane: 0,
-            editor: Editor::default(),
-        }
-    }
-}
-
 impl PanelState {
     /// Returns whether this is open beside the picture.
     pub fn has(&self, pane: RunAction) -> bool {
@@ -142,21 +121,11 @@ impl Hidden {
         match action {
             RunAction::Panel if self.panel => Some("This page has no panel."),
             RunAction::Lessons if self.lessons => Some("This page has no lessons."),
-            RunAction::Solvers | RunAction::Solver(_) => self.refusal_of_solvers(),
+            RunAction::Solvers | RunAction::Solver(_) if self.solvers => {
+                Some("This page has this solver alone.")
+            }
             _ => None,
         }
-    }
-
-    /// Returns why a list is left out; `None` if it is not.
-    pub fn refusal_of_list(&self, topic: Topic) -> Option<&'static str> {
-        match topic {
-            Topic::Scenes => None,
-            Topic::Solvers { .. } | Topic::Beside { .. } => self.refusal_of_solvers(),
-        }
-    }
-
-    fn refusal_of_solvers(&self) -> Option<&'static str> {
-        self.solvers.then_some("This page has this solver alone.")
     }
 }
 
@@ -165,7 +134,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::session::session;
+    use crate::session::{Topic, session};
 
     #[test]
     fn what_is_hidden_is_refused_and_nothing_changes() {

@@ -1,10 +1,12 @@
-//! The words of a command line that opens a window, from a link, a lesson, a test or the window
-//! itself: those of the program, but for the picture of a comparison and the help.
+//! What a window is to open with, and the words of a command line that say it, from a link, a
+//! lesson, a test or the window itself: those of the program, but for the picture of a comparison
+//! and the help.
 
 use std::iter::Peekable;
+use std::path::PathBuf;
 use std::slice::Iter;
 
-use a3_core::StepLimits;
+use a3_core::{Method, StepLimits};
 use a3_files::arguments::{
     absolute, grid, max_step, particle, solver, solver_and_step, step, threads,
 };
@@ -13,33 +15,41 @@ use a3_files::setup::{SceneOptions, check_count};
 use a3_media::show::{Arrows, Manner, Quantity, style};
 use a3_scenes::nearest;
 
-use super::opening::Opening;
+/// A scene, its runs, and the first look of the window.
+#[derive(Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an option")]
+pub struct Opening {
+    /// The scene's name or file.
+    pub scene: String,
+    /// Options of the scene.
+    pub options: SceneOptions,
+    /// Solver of each run, `None` for the scene's own, and its step or tolerance, `None` for the
+    /// solver's own.
+    pub methods: Vec<(Option<&'static Method>, Option<f64>)>,
+    /// Limits of adaptive steps.
+    pub limits: StepLimits,
+    /// Whether surfaces pass through one another and themselves.
+    pub no_contact: bool,
+    /// How the runs are drawn.
+    pub manner: Manner,
+    /// Whether the background is light, whatever the settings say.
+    pub light: bool,
+    /// Whether the runs are paused.
+    pub paused: bool,
+    /// Whether the window neither reads nor writes its settings.
+    pub no_settings: bool,
+    /// Whether the scene's file is loaded again whenever it is saved.
+    pub watch: bool,
+    /// Checkpoint from which the run continues.
+    pub resume: Option<PathBuf>,
+    /// Whether the window writes what is on the screen as lines of text.
+    pub status: bool,
+}
 
 /// Names of the options.
-const OPTIONS: [&str; 22] = [
-    "--scene",
-    "--grid",
-    "--wind",
-    "--swing",
-    "--self-collision",
-    "--threads",
-    "--absolute",
-    "--max-step",
-    "--springs-of",
-    "--wireframe",
-    "--springs",
-    "--orthographic",
-    "--dark",
-    "--light",
-    "--colour",
-    "--arrows",
-    "--no-config",
-    "--no-self-collision",
-    "--paused",
-    "--status",
-    "--watch",
-    "--resume",
-];
+const OPTIONS: &str = "--scene --grid --wind --swing --self-collision --threads --absolute \
+    --max-step --springs-of --wireframe --springs --orthographic --dark --light --colour --arrows \
+    --no-config --no-self-collision --paused --status --watch --resume";
 
 /// The words that are still to be read, and the option that is being read.
 struct Words<'a> {
@@ -97,17 +107,7 @@ fn is_plain(word: &str) -> bool {
 pub fn read(words: &[String]) -> Result<Opening, Failure> {
     let mut opening = Opening {
         scene: "cloth".into(),
-        options: SceneOptions::default(),
-        methods: vec![],
-        limits: StepLimits::default(),
-        no_contact: false,
-        manner: Manner::default(),
-        light: false,
-        paused: false,
-        no_settings: false,
-        watch: false,
-        resume: None,
-        status: false,
+        ..Opening::default()
     };
     let mut words = Words {
         rest: words.iter().peekable(),
@@ -217,7 +217,7 @@ fn set(opening: &mut Opening, words: &mut Words) -> Result<(), Failure> {
         "--watch" => opening.watch = words.flag()?,
         "--resume" => opening.resume = Some(words.read(|path| Ok(path.into()))?),
         option => {
-            return Err(Failure::usage(match nearest(option, OPTIONS) {
+            return Err(Failure::usage(match nearest(option, OPTIONS.split(' ')) {
                 Some(name) => format!("there is no option `{option}`; did you mean {name}?"),
                 None => format!("there is no option `{option}`"),
             }));

@@ -57,16 +57,7 @@ fn order(method: &Method) -> String {
 
 /// Lists all solvers.
 fn all() -> String {
-    let heading = [
-        "",
-        "solver",
-        " order",
-        " evaluations/step",
-        " default",
-        "serves",
-        "method",
-    ];
-    let mut rows = vec![heading.map(String::from).to_vec()];
+    let mut rows = report::headings("|solver| order| evaluations/step| default|serves|method");
     for m in integrators::METHODS {
         rows.push(vec![
             m.letter.map(String::from).unwrap_or_default(),

@@ -29,15 +29,12 @@ pub fn table() -> Result<String, Fault> {
         });
         format!("no, {}", number + 1)
     };
-    let mut rows = vec![
-        ["scenes with".to_owned()]
-            .into_iter()
-            .chain(families.iter().map(|family| family.letters.join(" ")))
-            .collect::<Vec<_>>(),
-    ];
+    let letters = families.iter().map(|family| family.letters.join(" "));
+    let heading = ["scenes with".to_owned()].into_iter().chain(letters);
+    let mut rows: Vec<Vec<_>> = vec![heading.collect()];
     for (k, kind) in kinds.iter().enumerate() {
         let answers = families.iter().map(|family| cell(family.refusals[k]));
-        rows.push([kind.words.to_owned()].into_iter().chain(answers).collect());
+        rows.push([kind.0.to_owned()].into_iter().chain(answers).collect());
     }
     let reason = |(number, why): (usize, Refusal)| format!("{number}. The solver {why}.\n");
     let reasons: String = (1..).zip(reasons).map(reason).collect();
@@ -46,19 +43,15 @@ pub fn table() -> Result<String, Fault> {
 
 /// Sorts the solvers into families, in the order of the table of solvers.
 fn families(kinds: &[Kind]) -> Result<Vec<Family>, Fault> {
-    let scenes = kinds
-        .iter()
-        .map(Kind::scene)
-        .collect::<Result<Vec<_>, _>>()?;
+    let scenes = kinds.iter().map(Kind::scene);
+    let scenes = scenes.collect::<Result<Vec<_>, _>>()?;
     let mut families: Vec<Family> = Vec::new();
     for method in METHODS {
         let refusal = |scene: &a3_core::Scene| method.refusal(scene.model.system());
         let refusals: Vec<_> = scenes.iter().map(refusal).collect();
         let letter = letter(method);
-        match families
-            .iter_mut()
-            .find(|family| family.refusals == refusals)
-        {
+        let is_same = |family: &&mut Family| family.refusals == refusals;
+        match families.iter_mut().find(is_same) {
             Some(family) => family.letters.push(letter),
             None => families.push(Family {
                 letters: vec![letter],
@@ -95,100 +88,57 @@ fn laid_out(rows: &[Vec<String>]) -> String {
     line(&rows[0]) + &line(&rule) + &rows[1..].iter().map(|row| line(row)).collect::<String>()
 }
 
-/// Kind of scenes.
-pub struct Kind {
-    /// Words for the kind.
-    pub words: &'static str,
-    /// An example of it, in TOML.
-    example: String,
-}
+/// Kind of scenes: words for it, and an example of it in TOML.
+pub struct Kind(pub &'static str, String);
 
 impl Kind {
-    fn new(words: &'static str, example: impl Into<String>) -> Self {
-        let example = example.into();
-        Self { words, example }
-    }
-
     /// Builds the example.
     pub fn scene(&self) -> Result<Scene, Fault> {
-        let description = Description::parse(&self.example)?;
+        let description = Description::parse(&self.1)?;
         Ok(description.build(None, &mut |_| Ok(octahedron()))?.scene)
     }
 }
 
 /// Returns all kinds, in the order of the table.
+#[rustfmt::skip]
 pub fn kinds() -> Vec<Kind> {
-    let rod = "constraint = [{ rod = [0, 1] }]";
-    let touching = "self_collision = true";
+    let rod = "constraint = [{ rod = [0, 1] }]\n";
+    let touching = "self_collision = true\n";
+    let damped = cloth("damping_ratio = 0.1");
+    let force = "wind = { on = true, seed = 7, force = [1, 0, 0] }";
+    let floor = "floor = { height = -1, friction = 0.4 }";
+    let moved = chain("pin = [{ at = ['first'], sine = { amplitude = [0, 0.1, 0], rate = 2 } }]");
+    let velocity = "velocity = [3, 0, 1], density = 1.2, drag = 1.2, lift = 0.6";
+    let body = "body = [{ parts = [{ box = [0.5, 0.25, 1] }], density = 500, at = [0, 0.5, 0] }]";
+    let ball = "joint = [{ bodies = [0, 1], ball = [0.5, 0, 0] }]";
+    let below = liquid("").replace("[0.5, 0.5, 0]", "[2, 1.75, 0]");
     vec![
-        Kind::new("first order (`[circle]`)", "circle.start = [1, 0, 0]"),
-        Kind::new(
-            "springs, drag, moving pins, a wind of one force",
-            "drag = 0.1\nwind = { on = true, seed = 7, force = [1, 0, 0] }\n".to_owned()
-                + &chain(
-                    "pin = [{ at = ['first'], sine = { amplitude = [0, 0.1, 0], rate = 2 } }]",
-                ),
-        ),
-        Kind::new("damped springs", cloth("damping_ratio = 0.1")),
-        Kind::new(
-            "springs that tear, limits of strain, obstacles",
-            "tear = 1.1\nfloor = { height = -1, friction = 0.4 }\n".to_owned()
-                + &cloth("strain_limit = 1.2"),
-        ),
-        Kind::new(
-            "springs that buckle",
-            cloth("buckling = { bending = 1e-4, compression = 20 }"),
-        ),
-        Kind::new("springs that only pull", chain("tension_only = true")),
-        Kind::new(
-            "wind on triangles",
-            "wind = { on = true, seed = 7, velocity = [3, 0, 1], density = 1.2, drag = 1.2, \
-             lift = 0.6 }\n"
-                .to_owned()
-                + &cloth(""),
-        ),
-        Kind::new(
-            "surfaces that touch",
-            format!("{touching}\n{}", cloth("damping_ratio = 0.1")),
-        ),
-        Kind::new("rods, ropes, wires", format!("{rod}\n{}", chain(""))),
-        Kind::new(
-            "rods, ropes, wires where surfaces touch",
-            format!("{touching}\n{rod}\n{}", cloth("damping_ratio = 0.1")),
-        ),
-        Kind::new("up to 78 rigid bodies", balls(78)),
-        Kind::new("more rigid bodies", balls(79)),
-        Kind::new(
-            "rods, ropes, wires on rigid bodies",
-            format!("constraint = [{{ rod = [0, 2] }}]\n{}", balls(2)),
-        ),
-        Kind::new(
-            "joints of rigid bodies",
-            format!(
-                "joint = [{{ bodies = [0, 1], ball = [0.5, 0, 0] }}]\n{}",
-                balls(2)
-            ),
-        ),
-        Kind::new("gas at constant pressure", balloon("pressure = 50")),
-        Kind::new("an amount of gas", balloon("fill = 1.02")),
-        Kind::new("elastic solids", solid("")),
-        Kind::new("damped elastic solids", solid("damping = 0.004")),
-        Kind::new("liquids", liquid("")),
-        Kind::new("viscous liquids", liquid("viscosity = 0.02")),
-        Kind::new(
-            "liquids on surfaces that touch",
-            format!(
-                "{touching}\n{}\n{}",
-                liquid(""),
-                cloth("damping_ratio = 0.1")
-            ),
-        ),
-        Kind::new(
-            "rigid bodies in liquids",
-            "body = [{ parts = [{ box = [0.5, 0.25, 1] }], density = 500, at = [0, 0.5, 0] }]\n"
-                .to_owned()
-                + &liquid("").replace("[0.5, 0.5, 0]", "[2, 1.75, 0]"),
-        ),
+        Kind("first order (`[circle]`)", "circle.start = [1, 0, 0]".into()),
+        Kind("springs, drag, moving pins, a wind of one force",
+             format!("drag = 0.1\n{force}\n{moved}")),
+        Kind("damped springs", damped.clone()),
+        Kind("springs that tear, limits of strain, obstacles",
+             format!("tear = 1.1\n{floor}\n{}", cloth("strain_limit = 1.2"))),
+        Kind("springs that buckle", cloth("buckling = { bending = 1e-4, compression = 20 }")),
+        Kind("springs that only pull", chain("tension_only = true")),
+        Kind("wind on triangles",
+             format!("wind = {{ on = true, seed = 7, {velocity} }}\n{}", cloth(""))),
+        Kind("surfaces that touch", format!("{touching}{damped}")),
+        Kind("rods, ropes, wires", format!("{rod}{}", chain(""))),
+        Kind("rods, ropes, wires where surfaces touch", format!("{touching}{rod}{damped}")),
+        Kind("up to 78 rigid bodies", balls(78)),
+        Kind("more rigid bodies", balls(79)),
+        Kind("rods, ropes, wires on rigid bodies",
+             format!("constraint = [{{ rod = [0, 2] }}]\n{}", balls(2))),
+        Kind("joints of rigid bodies", format!("{ball}\n{}", balls(2))),
+        Kind("gas at constant pressure", balloon("pressure = 50")),
+        Kind("an amount of gas", balloon("fill = 1.02")),
+        Kind("elastic solids", solid("")),
+        Kind("damped elastic solids", solid("damping = 0.004")),
+        Kind("liquids", liquid("")),
+        Kind("viscous liquids", liquid("viscosity = 0.02")),
+        Kind("liquids on surfaces that touch", format!("{touching}{}\n{damped}", liquid(""))),
+        Kind("rigid bodies in liquids", format!("{body}\n{below}")),
     ]
 }
 
@@ -232,20 +182,16 @@ fn liquid(keys: &str) -> String {
 
 /// Returns the mesh of the balloons: a corner on each side of the three axes.
 fn octahedron() -> Mesh {
-    let corner = |axis: usize, side: f64| {
+    let corner = |i: usize| {
         let mut place = [0.0; 3];
-        place[axis] = side;
+        place[i / 2] = [1.0, -1.0][i % 2];
         place
     };
     let faces = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4]];
+    let triangles = faces.iter().flat_map(|&[a, b, c]| [[a, b, c], [b, a, 5]]);
     Mesh {
-        positions: (0..6)
-            .map(|i| corner(i / 2, if i % 2 == 0 { 1.0 } else { -1.0 }))
-            .collect(),
-        triangles: faces
-            .iter()
-            .flat_map(|&[a, b, c]| [[a, b, c], [b, a, 5]])
-            .collect(),
+        positions: (0..6).map(corner).collect(),
+        triangles: triangles.collect(),
         ..Mesh::default()
     }
 }

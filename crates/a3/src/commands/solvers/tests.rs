@@ -25,7 +25,7 @@ fn solvers_do_what_the_table_says() {
                 refused.is_none(),
                 "{} on {}",
                 method.name,
-                kind.words
+                kind.0
             );
         }
     }

@@ -27,15 +27,13 @@ pub fn run(sweep: &Sweep, plan: &Plan, folder: &Folder, size: (u32, u32)) -> Res
         }
     }
     folder.warn_of_others(plan);
-    let missing = plan.runs.len() - records.len();
-    let say_missing = || {
-        format!(
-            "{missing} of {} runs are missing; `a3 sweep` makes them, or --only a share of them",
-            plan.runs.len()
-        )
-    };
+    let (all, count, panels) = (plan.runs.len(), records.len(), plan.variants.len());
+    let missing = all - count;
+    let why = format!(
+        "{missing} of {all} runs are missing; `a3 sweep` makes them, or --only a share of them"
+    );
     if records.is_empty() {
-        return Err(Failure::run(say_missing()));
+        return Err(Failure::run(why));
     }
     let beside = |ending: &str| {
         let mut path = folder.path().as_os_str().to_owned();
@@ -45,15 +43,11 @@ pub fn run(sweep: &Sweep, plan: &Plan, folder: &Folder, size: (u32, u32)) -> Res
     let (table, chart) = (beside(".csv"), beside(".svg"));
     output::write(&table, lines(sweep, plan, &records)?.as_bytes())?;
     let lost = records.iter().filter(|(_, r)| r.lost_at.is_some()).count();
-    terminal::say(&format!(
-        "{} runs, of which {lost} blew up: {}\n",
-        records.len(),
-        table.display()
-    ))?;
-    if plan.variants.len() > MAX_PANELS {
+    let table = table.display();
+    terminal::say(&format!("{count} runs, of which {lost} blew up: {table}\n"))?;
+    if panels > MAX_PANELS {
         terminal::say(&format!(
-            "no chart: it would have {} panels, and at most {MAX_PANELS} can be read\n",
-            plan.variants.len()
+            "no chart: it would have {panels} panels, and at most {MAX_PANELS} can be read\n"
         ))?;
     } else {
         let figure = diagram(sweep, plan, &records).draw(f64::from(size.0), f64::from(size.1));
@@ -62,7 +56,7 @@ pub fn run(sweep: &Sweep, plan: &Plan, folder: &Folder, size: (u32, u32)) -> Res
         terminal::say(&format!("chart: {}\n", chart.display()))?;
     }
     if missing > 0 {
-        return Err(Failure::run(say_missing()));
+        return Err(Failure::run(why));
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use a3_core::accuracy::{Metric, Scope};
 use a3_core::{Method, integrators};
-use a3_files::bounds;
+use a3_files::bounds::{LARGEST_STEP, SMALLEST_STEP, TOLERANCES};
 use a3_files::failure::InputError;
 use a3_files::output;
 use a3_files::scene_file::Source;
@@ -14,8 +14,7 @@ use a3_files::terminal;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::keys;
-use super::values::all;
+use super::values::{all, flat};
 
 /// Largest size of the file (bytes).
 const MAX_SIZE: u64 = 1 << 20;
@@ -109,34 +108,26 @@ impl Sweep {
                 })?
             }
         };
-        let keys = keys::flat(&text.keys).into_iter().map(|(path, values)| {
+        let keys = flat(&text.keys).into_iter().map(|(path, values)| {
             let values = all(&values).map_err(|why| format!("keys.{path}: {why}"))?;
             Ok((path, values))
         });
-        let until = text.until;
+        let (until, stem) = (text.until, path.file_stem().unwrap_or_default());
         if until.is_some_and(|until| !(until > 0.0 && until <= 1e4)) {
             return Err("until: it must be a number of seconds above 0 and at most 10000".into());
         }
-        let factors = 1e-9..=1e9;
+        let (factors, steps) = (1e-9..=1e9, SMALLEST_STEP..=LARGEST_STEP);
         let sweep = Self {
             file: path.display().to_string(),
-            name: path
-                .file_stem()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned(),
+            name: stem.to_string_lossy().into_owned(),
             scenes: scenes.collect::<Result<_, _>>()?,
             methods: methods.collect::<Result<_, _>>()?,
-            steps: numbers(
-                "step",
-                text.step.as_ref(),
-                bounds::SMALLEST_STEP..=bounds::LARGEST_STEP,
-            )?,
-            tolerances: numbers("tolerance", text.tolerance.as_ref(), bounds::TOLERANCES)?,
+            steps: numbers("step", text.step.as_ref(), &steps)?,
+            tolerances: numbers("tolerance", text.tolerance.as_ref(), &TOLERANCES)?,
             until,
             stiffness: match &text.stiffness {
                 None => None,
-                factor => Some(numbers(STIFFNESS, factor.as_ref(), factors)?),
+                factor => Some(numbers(STIFFNESS, factor.as_ref(), &factors)?),
             },
             error,
             scope: Scope {
@@ -152,10 +143,9 @@ impl Sweep {
                 } else {
                     ("step", "steps")
                 };
-                return Err(format!(
-                    "the solver {} takes {other}: the key `{what}` is missing",
-                    method.name
-                ));
+                let name = method.name;
+                let why = format!("the solver {name} takes {other}: the key `{what}` is missing");
+                return Err(why);
             }
         }
         if sweep.steps.is_empty() && sweep.tolerances.is_empty() {
@@ -176,9 +166,8 @@ impl Sweep {
     /// Returns the names of the swept keys, including the stiffness.
     pub fn names(&self) -> Vec<&str> {
         let names = self.keys.iter().map(|(path, _)| path.as_str());
-        names
-            .chain(self.stiffness.as_ref().map(|_| STIFFNESS))
-            .collect()
+        let factor = self.stiffness.as_ref().map(|_| STIFFNESS);
+        names.chain(factor).collect()
     }
 }
 
@@ -186,35 +175,39 @@ fn is_adaptive(method: &Method) -> bool {
     method.control(1e-3).step().is_none()
 }
 
-/// Reads the numbers of a key, each within a range; none without the key.
+/// Reads the values of a key, each by `read`, which says what a wrong one must be; none without the
+/// key.
+fn values<T>(
+    key: &str,
+    value: Option<&Value>,
+    read: impl Fn(&Value) -> Result<T, String>,
+) -> Result<Vec<T>, String> {
+    let values = value.map_or(Ok(vec![]), all);
+    let values = values.and_then(|values| {
+        let wrong = |value| move |must| format!("{must}, not {value}");
+        let read = |value| read(value).map_err(wrong(value));
+        values.iter().map(read).collect()
+    });
+    values.map_err(|why| format!("{key}: {why}"))
+}
+
+/// Reads the numbers of a key, each within a range.
 fn numbers(
     key: &str,
     value: Option<&Value>,
-    range: std::ops::RangeInclusive<f64>,
+    range: &std::ops::RangeInclusive<f64>,
 ) -> Result<Vec<f64>, String> {
-    let Some(value) = value else {
-        return Ok(vec![]);
-    };
-    let values = all(value).map_err(|why| format!("{key}: {why}"))?;
-    let number = |value: &Value| {
+    values(key, value, |value| {
         let number = value.as_f64().filter(|number| range.contains(number));
         let (low, high) = (range.start(), range.end());
-        number.ok_or_else(|| {
-            format!("{key}: each must be a number from {low:e} to {high:e}, not {value}")
-        })
-    };
-    values.iter().map(number).collect()
+        number.ok_or_else(|| format!("each must be a number from {low:e} to {high:e}"))
+    })
 }
 
-/// Reads the texts of a key; none without the key.
+/// Reads the texts of a key.
 fn texts(key: &str, value: Option<&Value>) -> Result<Vec<String>, String> {
-    let Some(value) = value else {
-        return Ok(vec![]);
-    };
-    let values = all(value).map_err(|why| format!("{key}: {why}"))?;
-    let text = |value: &Value| {
+    values(key, value, |value| {
         let text = value.as_str().map(str::to_owned);
-        text.ok_or_else(|| format!("{key}: it must be a name or a list of names, not {value}"))
-    };
-    values.iter().map(text).collect()
+        text.ok_or_else(|| "it must be a name or a list of names".into())
+    })
 }

@@ -8,8 +8,7 @@ use a3_files::failure::Failure;
 use a3_files::output;
 use a3_files::rows;
 use a3_files::terminal;
-use a3_lab::chart::data::VERSION;
-use a3_lab::chart::record::Record;
+use a3_lab::chart::record::{Record, VERSION};
 
 use super::plan::{Plan, Run};
 use crate::cli::sweep::Id;
@@ -34,11 +33,8 @@ impl Folder {
     /// Creates the folder if it does not exist.
     pub fn create(&self) -> Result<(), Failure> {
         fs::create_dir_all(&self.0).map_err(|why| {
-            let path = self.0.display();
-            Failure::run(format!(
-                "{path}: the folder could not be made: {}",
-                terminal::reason(&why)
-            ))
+            let (path, why) = (self.0.display(), terminal::reason(&why));
+            Failure::run(format!("{path}: the folder could not be made: {why}"))
         })
     }
 
@@ -64,19 +60,15 @@ impl Folder {
             fs::read(&path)
         };
         let bytes = bytes.map_err(|why| fault(terminal::reason(&why)))?;
-        let record = String::from_utf8(bytes)
-            .ok()
-            .and_then(|text| record_of(&text));
+        let text = String::from_utf8(bytes).ok();
         let is_of = |record: &Record| {
             (record.version.as_str(), record.solver.as_str()) == (VERSION, run.method.name)
                 && record.setting == run.setting
         };
-        let record = record.filter(is_of);
+        let record = text.and_then(|text| record_of(&text)).filter(is_of);
         if record.is_none() {
-            terminal::warn(&format!(
-                "{}: it is damaged: the run counts as missing",
-                path.display()
-            ));
+            let path = path.display();
+            terminal::warn(&format!("{path}: it is damaged: the run counts as missing"));
         }
         Ok(record)
     }

@@ -5,7 +5,6 @@
 mod collect;
 mod file;
 mod folder;
-mod keys;
 mod plan;
 mod values;
 mod work;
@@ -18,15 +17,12 @@ use file::Sweep;
 use folder::Folder;
 use plan::Plan;
 
-use crate::cli::Sweep as Options;
+use crate::cli::{Sweep as Options, limit_threads};
 
 /// Runs the command.
 pub fn run(options: &Options) -> Result<(), Failure> {
     interrupt::listen();
-    if let Some(count) = options.threads {
-        let threads = rayon::ThreadPoolBuilder::new().num_threads(count);
-        let _ = threads.build_global();
-    }
+    limit_threads(options.threads);
     let sweep = Sweep::read(&options.file)?;
     let plan = Plan::new(&sweep)?;
     if options.plan {

@@ -5,15 +5,14 @@ use a3_core::{Method, Scene, integrators};
 use a3_files::failure::Failure;
 use a3_files::scene_file::{Hash, Source};
 use a3_lab::chart::check_metric;
-use a3_lab::chart::data::VERSION;
 use a3_lab::chart::measure::stiffened;
+use a3_lab::chart::record::VERSION;
 use a3_lab::motion::words;
 use rayon::prelude::*;
 use serde_json::Value;
 
 use super::file::Sweep;
-use super::keys;
-use super::values::exact;
+use super::values::{exact, set};
 use crate::cli::sweep::Id;
 
 /// Largest number of runs.
@@ -129,18 +128,13 @@ impl Variant {
     /// Returns the file of the scene with these values.
     fn source(&self, sweep: &Sweep) -> Result<Source, String> {
         let source = &sweep.scenes[self.scene];
-        let keys: Vec<_> = sweep
-            .keys
-            .iter()
-            .map(|(path, _)| path)
-            .zip(&self.values)
-            .collect();
-        if keys.is_empty() {
+        if sweep.keys.is_empty() {
             return Ok(source.clone());
         }
         source.with(|scene| {
-            keys.iter().try_for_each(|(path, value)| {
-                keys::set(scene, path, value).map_err(|why| format!("keys.{path}: {why}"))
+            let mut keys = sweep.keys.iter().zip(&self.values);
+            keys.try_for_each(|((path, _), value)| {
+                set(scene, path, value).map_err(|why| format!("keys.{path}: {why}"))
             })
         })
     }
@@ -160,11 +154,8 @@ fn variant(
     number: usize,
     places: &[usize],
 ) -> Result<Planned, String> {
-    let picked = sweep
-        .keys
-        .iter()
-        .zip(places)
-        .map(|((_, values), k)| values[*k].clone());
+    let picked = sweep.keys.iter().zip(places);
+    let picked = picked.map(|((_, values), k)| values[*k].clone());
     let mut values: Vec<_> = picked.collect();
     let factors = sweep.stiffness.as_ref();
     let factor = factors.map(|factors| factors[places[places.len() - 1]]);
@@ -193,21 +184,12 @@ fn variant(
         .checked(&scene.model)
         .map_err(|why| why.to_string())?;
     let mut hash = Hash::default();
-    hash.add(VERSION.bytes());
-    hash.add([0]);
-    hash.add(source.text().bytes());
-    hash.add([0]);
-    hash.add(
-        variant
-            .name
-            .bytes()
-            .chain(words(variant.scope, &scene.model).bytes()),
-    );
-    hash.add(
-        [variant.stiffness, variant.until]
-            .into_iter()
-            .flat_map(f64::to_le_bytes),
-    );
+    hash.add(VERSION.bytes().chain([0]));
+    hash.add(source.text().bytes().chain([0]));
+    let scope = words(variant.scope, &scene.model);
+    hash.add(variant.name.bytes().chain(scope.bytes()));
+    let numbers = [variant.stiffness, variant.until];
+    hash.add(numbers.into_iter().flat_map(f64::to_le_bytes));
     let (mut runs, mut refusals) = (vec![], vec![]);
     for &method in methods {
         if let Err(why) = method.check(scene.model.system()) {

@@ -1,6 +1,10 @@
-//! Values of a sweep: a single one, a list, or a range.
+//! Values of a sweep: a single one, a list, or a range; and the keys of a scene that have them, by
+//! their paths: `chain.stiffness` of all chains, `chain.0.stiffness` of the first, `gravity.1` of a
+//! list.
 
-use serde_json::{Number, Value};
+use std::collections::BTreeMap;
+
+use serde_json::{Map, Number, Value};
 
 /// Largest number of values of a range.
 const MAX_COUNT: u64 = 1_000_000;
@@ -12,7 +16,7 @@ const VALID_VALUES: &str =
     "a value, a list, or a range such as { from = 1, to = 100, count = 5, spacing = \"linear\" }";
 
 /// Returns whether a table is a range.
-pub fn is_range(value: &Value) -> bool {
+fn is_range(value: &Value) -> bool {
     let table = value.as_object();
     table.is_some_and(|table| RANGE[..3].iter().any(|key| table.contains_key(*key)))
 }
@@ -24,9 +28,8 @@ pub fn all(value: &Value) -> Result<Vec<Value>, String> {
         Value::Array(list) => Ok(list.clone()),
         Value::Object(table) => {
             if let Some(key) = table.keys().find(|key| !RANGE.contains(&key.as_str())) {
-                return Err(format!(
-                    "there is no key `{key}`: it must be {VALID_VALUES}"
-                ));
+                let why = format!("there is no key `{key}`: it must be {VALID_VALUES}");
+                return Err(why);
             }
             let number = |key: &str| {
                 let number = table.get(key).and_then(Value::as_f64);
@@ -75,6 +78,58 @@ pub fn exact(number: f64) -> Value {
     }
 }
 
+/// Returns the paths of all keys in nested tables, with their values. A table is a range if it has
+/// the keys of one; the name of any other table is a part of the path.
+pub fn flat(keys: &BTreeMap<String, Value>) -> Vec<(String, Value)> {
+    let mut all = vec![];
+    for (name, value) in keys {
+        flatten(name.clone(), value, &mut all);
+    }
+    all
+}
+
+fn flatten(path: String, value: &Value, all: &mut Vec<(String, Value)>) {
+    match value {
+        Value::Object(table) if !is_range(value) && !table.is_empty() => {
+            for (name, value) in table {
+                flatten(format!("{path}.{name}"), value, all);
+            }
+        }
+        value => all.push((path, value.clone())),
+    }
+}
+
+/// Sets the value of the key at a path.
+pub fn set(at: &mut Value, path: &str, value: &Value) -> Result<(), String> {
+    let (first, rest) = match path.split_once('.') {
+        Some((first, rest)) => (first, Some(rest)),
+        None => (path, None),
+    };
+    let item = match (at, first.parse::<usize>()) {
+        (Value::Array(list), Ok(k)) => {
+            let last = list.len().max(1) - 1;
+            let why = || format!("there is no number {k}: the list has 0 to {last}");
+            list.get_mut(k).ok_or_else(why)?
+        }
+        (Value::Array(list), Err(_)) => {
+            return list.iter_mut().try_for_each(|item| set(item, path, value));
+        }
+        (Value::Object(table), _) => {
+            let empty = || Value::Object(Map::new());
+            table.entry(first).or_insert_with(empty)
+        }
+        _ => {
+            let why = format!("there is no key `{first}` in a value that is not a table");
+            return Err(why);
+        }
+    };
+    match rest {
+        Some(rest) => return set(item, rest, value),
+        None => item.clone_from(value),
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -104,5 +159,33 @@ mod tests {
         ] {
             assert!(all(&wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn keys_are_set_by_their_paths() {
+        let mut scene = json!({"gravity": [0, -9.8, 0], "chain": [{"mass": 1}, {"mass": 2}]});
+        for (path, value) in [
+            ("chain.mass", json!(7)),
+            ("chain.1.stiffness", json!(25)),
+            ("gravity.1", json!(-1)),
+            ("wind.seed", json!(3)),
+            ("drag", json!(0.1)),
+        ] {
+            set(&mut scene, path, &value).unwrap();
+        }
+        let right = json!({"gravity": [0, -1, 0], "drag": 0.1, "wind": {"seed": 3},
+            "chain": [{"mass": 7}, {"mass": 7, "stiffness": 25}]});
+        assert_eq!(scene, right);
+        for wrong in ["gravity.3", "chain.2.mass", "drag.more"] {
+            assert!(set(&mut scene, wrong, &json!(1)).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn tables_are_parts_of_paths() {
+        let keys = json!({"chain": {"mass": [1, 2], "0": {"drag": {"from": 1, "to": 2, "count": 2}}}, "a.b": 1});
+        let flat = flat(&serde_json::from_value(keys).unwrap());
+        let paths: Vec<_> = flat.iter().map(|(path, _)| path.as_str()).collect();
+        assert_eq!(paths, ["a.b", "chain.0.drag", "chain.mass"]);
     }
 }

@@ -6,9 +6,8 @@ use a3_core::accuracy::{Frames, horizon};
 use a3_files::bar::Bar;
 use a3_files::failure::Failure;
 use a3_files::interrupt;
-use a3_lab::chart::data::VERSION;
 use a3_lab::chart::measure::{compared, precision, reference};
-use a3_lab::chart::record::Record;
+use a3_lab::chart::record::{Record, VERSION};
 use a3_lab::motion::words;
 use rayon::prelude::*;
 
@@ -32,10 +31,11 @@ pub fn run(sweep: &Sweep, plan: &Plan, share: &[usize], folder: &Folder) -> Resu
     let groups: Vec<&[&Run]> = missing.chunk_by(|a, b| a.variant == b.variant).collect();
     let done = groups.into_par_iter().try_for_each(|runs| {
         let variant = &plan.variants[runs[0].variant];
-        run_variant(sweep, variant, runs, folder, &|| {
+        let done = run_variant(sweep, variant, runs, folder, &|| {
             left.fetch_sub(1, Ordering::Relaxed);
             bar.advance(1.0);
-        })
+        });
+        Failure::unless_stopped(done).map(drop)
     });
     bar.clear();
     done.map(|()| left.into_inner())
@@ -54,16 +54,8 @@ fn run_variant(
     let ahead = horizon(&scene, until, &interrupt::go_on).map_err(Failure::run)?;
     let Some(ahead) = ahead else { return Ok(()) };
     let precision = precision(&scene, ahead.motion);
-    let Some(reference) = reference(
-        &interrupt::go_on,
-        &scene,
-        Frames::new(until),
-        scope,
-        precision,
-    )?
-    else {
-        return Ok(());
-    };
+    let frames = Frames::new(until);
+    let reference = reference(&interrupt::go_on, &scene, frames, scope, precision)?;
     let grid = scene.grid();
     let blank = Record {
         version: VERSION.into(),
@@ -81,17 +73,10 @@ fn run_variant(
             setting: run.setting,
             ..blank.clone()
         };
-        if let Some((record, _)) = compared(
-            like,
-            &scene,
-            run.method,
-            &reference,
-            &mut [],
-            &interrupt::go_on,
-        )? {
-            folder.write(run.id, record)?;
-            done();
-        }
+        let go_on = &interrupt::go_on;
+        let (record, _) = compared(like, &scene, run.method, &reference, &mut [], go_on)?;
+        folder.write(run.id, record)?;
+        done();
         Ok(())
     })
 }

@@ -1,12 +1,11 @@
-//! The parts of a glTF document that describe triangles.
+//! The parts of a glTF document that describe triangles, and its accessors: numbers in views of its
+//! buffers, some of them replaced (sparse).
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Matrix4;
 use serde::Deserialize;
-
-use super::accessor::{Accessor, View};
 
 /// Document, without the parts that are not read.
 #[derive(Deserialize)]
@@ -37,12 +36,7 @@ pub(super) struct Document<'a> {
 /// Version of a glTF file, in a form that all versions of the format have.
 #[derive(Deserialize)]
 pub(super) struct Head {
-    pub asset: HeadAsset,
-}
-
-#[derive(Deserialize)]
-pub(super) struct HeadAsset {
-    pub version: serde_json::Value,
+    pub asset: serde_json::Value,
 }
 
 #[derive(Deserialize)]
@@ -141,9 +135,8 @@ impl Document<'_> {
         let (mut left, mut placed) = (next(roots, Matrix4::identity()), vec![]);
         while let Some((k, above)) = left.pop() {
             let node = item(&self.nodes, k, "node")?;
-            if std::mem::replace(&mut seen[k], true) {
-                return Err(format!("node {k} has two parents: nodes form trees"));
-            }
+            refuse!(if std::mem::replace(&mut seen[k], true) =>
+                "node {k} has two parents: nodes form trees");
             let matrix = above * node.matrix();
             placed.push((k, matrix));
             left.extend(next(&node.children, matrix));
@@ -186,4 +179,196 @@ impl Node {
             _ => f64::from(axes[col][row] * scale[col]),
         })
     }
+}
+
+// Component types: the codes of glTF.
+const I8: u32 = 5120;
+const U8: u32 = 5121;
+const I16: u32 = 5122;
+const U16: u32 = 5123;
+const U32: u32 = 5125;
+const F32: u32 = 5126;
+
+/// Accessor of `count` elements.
+#[derive(Clone, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Accessor {
+    buffer_view: Option<usize>,
+    #[serde(default)]
+    byte_offset: usize,
+    component_type: u32,
+    pub count: usize,
+    #[serde(rename = "type")]
+    kind: String,
+    sparse: Option<Sparse>,
+    /// Whether whole numbers are fractions of the largest one of their type.
+    #[serde(default)]
+    normalized: bool,
+}
+
+impl Accessor {
+    /// Returns whether its numbers are in a buffer. If not, they are 0, or an extension stores
+    /// them.
+    pub fn is_stored(&self) -> bool {
+        self.buffer_view.is_some() || self.sparse.is_some()
+    }
+
+    /// Returns the accessor of its first `count` elements.
+    pub fn first(&self, count: usize) -> Self {
+        Self {
+            count,
+            ..self.clone()
+        }
+    }
+}
+
+/// Elements that are replaced (sparse storage).
+#[derive(Clone, Deserialize)]
+struct Sparse {
+    count: usize,
+    indices: Part,
+    values: Part,
+}
+
+/// Part of a view. Only indices have a component type here.
+#[derive(Clone, Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Part {
+    buffer_view: usize,
+    #[serde(default)]
+    byte_offset: usize,
+    component_type: Option<u32>,
+}
+
+/// View of a buffer.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct View {
+    buffer: usize,
+    #[serde(default)]
+    byte_offset: usize,
+    byte_length: usize,
+    byte_stride: Option<usize>,
+}
+
+/// Bytes of a file's buffers, and the views of them.
+pub(super) struct Buffers<'a> {
+    pub buffers: Vec<Cow<'a, [u8]>>,
+    pub views: &'a [View],
+}
+
+impl Buffers<'_> {
+    /// Reads vectors of three or four numbers, or matrices of sixteen.
+    pub fn vectors<const N: usize>(&self, accessor: &Accessor) -> Result<Vec<[f32; N]>, String> {
+        let kind = match N {
+            3 => "VEC3",
+            4 => "VEC4",
+            _ => "MAT4",
+        };
+        refuse!(if accessor.kind != kind => "its type is {}, not {kind}", accessor.kind);
+        let (size, largest, read) = number(accessor.component_type)?;
+        let bytes = self.bytes(accessor, N * size)?;
+        let is_share = accessor.normalized && largest > 0.0;
+        let share = |x: f32| if is_share { (x / largest).max(-1.0) } else { x };
+        let rows = bytes.chunks_exact(N * size);
+        let row = |row: &[u8]| std::array::from_fn(|k| share(read(&row[k * size..][..size])));
+        Ok(rows.map(row).collect())
+    }
+
+    /// Reads numbers of points.
+    pub fn indices(&self, accessor: &Accessor) -> Result<Vec<u32>, String> {
+        refuse!(if accessor.kind != "SCALAR" => "indices are single numbers");
+        let size = size(accessor.component_type)?;
+        Ok(whole(&self.bytes(accessor, size)?, size))
+    }
+
+    /// Returns the bytes of all elements of this size (bytes), one after another.
+    fn bytes(&self, accessor: &Accessor, size: usize) -> Result<Vec<u8>, String> {
+        let count = accessor.count;
+        let mut bytes = match accessor.buffer_view {
+            None => vec![0; count.checked_mul(size).ok_or("its count is too large")?],
+            Some(view) => self.packed(view, accessor.byte_offset, count, size)?,
+        };
+        if let Some(sparse) = &accessor.sparse {
+            let (some, indices, values) = (sparse.count, &sparse.indices, &sparse.values);
+            refuse!(if some > count => "it replaces {some} elements of {count}");
+            let wide = self::size(indices.component_type.unwrap_or(0))?;
+            let places = self.packed(indices.buffer_view, indices.byte_offset, some, wide)?;
+            let values = self.packed(values.buffer_view, values.byte_offset, some, size)?;
+            for (k, value) in whole(&places, wide)
+                .into_iter()
+                .zip(values.chunks_exact(size))
+            {
+                let place = bytes.chunks_exact_mut(size).nth(k as usize);
+                let place = place.ok_or_else(|| format!("it replaces element {k} of {count}"))?;
+                place.copy_from_slice(value);
+            }
+        }
+        Ok(bytes)
+    }
+
+    /// Returns the bytes of `count` elements of this size (bytes) in a view, without gaps.
+    fn packed(
+        &self,
+        view: usize,
+        from: usize,
+        count: usize,
+        size: usize,
+    ) -> Result<Vec<u8>, String> {
+        let it = self.views.get(view);
+        let it = it.ok_or_else(|| format!("there is no view {view}"))?;
+        let bytes = self.buffers.get(it.buffer);
+        let bytes = bytes.and_then(|bytes| bytes.get(it.byte_offset..)?.get(..it.byte_length));
+        let bytes = bytes.and_then(|bytes| bytes.get(from..));
+        let bytes = bytes.ok_or_else(|| format!("view {view} is not within its buffer"))?;
+        let stride = it.byte_stride.unwrap_or(size);
+        refuse!(if !(size..=252).contains(&stride) =>
+            "the stride of view {view} is {stride}: it is from {size} to 252");
+        let there = (bytes.len() + stride - size) / stride;
+        refuse!(if count > there => "view {view} has {there} elements, not {count}");
+        let rows = bytes.chunks(stride).take(count);
+        Ok(rows.flat_map(|row| &row[..size]).copied().collect())
+    }
+}
+
+/// Encoding of the numbers of a type: their size (bytes), the largest one, which stands for 1 in
+/// normalized numbers, or 0 if the type is never normalized, and how they are read.
+type Number = (usize, f32, fn(&[u8]) -> f32);
+
+fn number(component_type: u32) -> Result<Number, String> {
+    Ok(match component_type {
+        I8 => (1, 127.0, |it| f32::from(it[0].cast_signed())),
+        U8 => (1, 255.0, |it| f32::from(it[0])),
+        I16 => (2, 32767.0, |it| {
+            f32::from(i16::from_le_bytes([it[0], it[1]]))
+        }),
+        U16 => (2, 65535.0, |it| {
+            f32::from(u16::from_le_bytes([it[0], it[1]]))
+        }),
+        F32 => (4, 0.0, |it| {
+            f32::from_le_bytes([it[0], it[1], it[2], it[3]])
+        }),
+        other => {
+            let why = "which those of points have not";
+            refuse!("its numbers have the type {other}, {why}");
+        }
+    })
+}
+
+/// Returns the size of a whole number of a type (bytes).
+fn size(component_type: u32) -> Result<usize, String> {
+    match component_type {
+        U8 => Ok(1),
+        U16 => Ok(2),
+        U32 => Ok(4),
+        other => Err(format!(
+            "its numbers have the type {other}, which indices have not"
+        )),
+    }
+}
+
+/// Reads whole numbers of this size (bytes).
+fn whole(bytes: &[u8], size: usize) -> Vec<u32> {
+    let number = |bytes: &[u8]| bytes.iter().rev().fold(0, |n, b| n << 8 | u32::from(*b));
+    bytes.chunks_exact(size).map(number).collect()
 }

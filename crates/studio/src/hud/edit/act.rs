@@ -53,7 +53,13 @@ pub fn click(session: &mut Session, aim: &Aim) {
     let done = match session.panel.editor.tool {
         Tool::ThrowBall | Tool::ThrowBox => thrown(session, aim, Throw::default()),
         Tool::AddBall | Tool::AddBox => carry_out(session, another_body(session, aim)),
-        Tool::Particle => carry_out(session, another_particle(session, aim)),
+        Tool::Particle => {
+            let position = aim.point.into();
+            let mass = session.panel.editor.value(Measure::PointMass);
+            let add = Edit::AddParticle { position, mass };
+            let said = "There is another particle now.".into();
+            carry_out(session, (add, "particle".into(), said))
+        }
         Tool::Spring | Tool::Rod | Tool::Rope => {
             Err("Drag from one particle to another to join them.".into())
         }
@@ -112,21 +118,18 @@ fn body(session: &Session, at: Vector3<f64>, velocity: Vector3<f64>) -> (RigidBo
     let is_ball = matches!(editor.tool, Tool::ThrowBall | Tool::AddBall);
     // With its ends, a capsule of this length has the volume of a disc of 1 m.
     let length = Some(1.0 - 2.0 / 3.0 * size).filter(|length| is_sheet(session) && *length > 0.0);
-    let part = match (is_ball, length) {
-        (true, None) => PartSpec {
-            ball: Some(0.5 * size),
-            ..PartSpec::default()
-        },
-        (true, Some(length)) => PartSpec {
-            capsule: Some([length, 0.5 * size]),
-            rotation: Some([FRAC_PI_2, 0.0, 0.0]),
-            ..PartSpec::default()
-        },
-        (false, _) => PartSpec {
-            cuboid: Some([size, size, if is_sheet(session) { 1.0 } else { size }]),
-            ..PartSpec::default()
-        },
-    };
+    let mut part = PartSpec::default();
+    match (is_ball, length) {
+        (true, None) => part.ball = Some(0.5 * size),
+        (true, Some(length)) => {
+            part.capsule = Some([length, 0.5 * size]);
+            part.rotation = Some([FRAC_PI_2, 0.0, 0.0]);
+        }
+        (false, _) => {
+            let depth = if is_sheet(session) { 1.0 } else { size };
+            part.cuboid = Some([size, size, depth]);
+        }
+    }
     let body = RigidBody {
         parts: vec![part],
         mass: Some(editor.value(Measure::Mass)),
@@ -228,15 +231,6 @@ fn another_body(session: &Session, aim: &Aim) -> Planned {
     (Edit::AddBody(body), name.into(), said)
 }
 
-fn another_particle(session: &Session, aim: &Aim) -> Planned {
-    let add = Edit::AddParticle {
-        position: aim.point.into(),
-        mass: session.panel.editor.value(Measure::PointMass),
-    };
-    let said = "There is another particle now.".into();
-    (add, "particle".into(), said)
-}
-
 /// Plans a spring, a rod or a rope between two particles.
 fn link(session: &Session, [i, j]: [usize; 2]) -> Result<Planned, String> {
     let editor = &session.panel.editor;
@@ -255,6 +249,15 @@ fn link(session: &Session, [i, j]: [usize; 2]) -> Result<Planned, String> {
     let others = panes.map(|pane| distance(pane.simulation.state()));
     let lengths: Vec<_> = others.chain([distance(&run.scene().state)]).collect();
     let longest = lengths.iter().copied().fold(0.0, f64::max);
+    let constraint = |rod, rope, length| {
+        let length = Some(length);
+        Edit::AddConstraint(ConstraintSpec {
+            rod,
+            rope,
+            length,
+            ..ConstraintSpec::default()
+        })
+    };
     let (name, add) = match editor.tool {
         Tool::Spring => {
             let stiffness = editor.value(Measure::Stiffness);
@@ -263,14 +266,7 @@ fn link(session: &Session, [i, j]: [usize; 2]) -> Result<Planned, String> {
             let spring = (i, j, stiffness, now, short(damping, 3));
             ("spring", Edit::AddSpring(spring))
         }
-        Tool::Rope => (
-            "rope",
-            Edit::AddConstraint(ConstraintSpec {
-                rope: Some([i, j]),
-                length: Some(longest),
-                ..ConstraintSpec::default()
-            }),
-        ),
+        Tool::Rope => ("rope", constraint(None, Some([i, j]), longest)),
         _ => {
             let other = lengths
                 .iter()
@@ -286,14 +282,7 @@ fn link(session: &Session, [i, j]: [usize; 2]) -> Result<Planned, String> {
                      {elsewhere}: reset the scene (r) first, or take a spring or a rope."
                 ));
             }
-            (
-                "rod",
-                Edit::AddConstraint(ConstraintSpec {
-                    rod: Some([i, j]),
-                    length: Some(now),
-                    ..ConstraintSpec::default()
-                }),
-            )
+            ("rod", constraint(Some([i, j]), None, now))
         }
     };
     let said = format!("A {name} joins the particles {i} and {j}.");
@@ -306,11 +295,8 @@ fn delete(session: &mut Session, aim: &Aim) -> Result<String, String> {
     let body_of = |target: Target| network.body_of(target.particle()?);
     let (edits, name) = match (aim.target, aim.link) {
         (Some(Target::Obstacle(k)), _) => {
-            turn_part(
-                session,
-                part_of_obstacle(session, network, k)?,
-                Turn::To(0.0),
-            );
+            let part = part_of_obstacle(session, network, k)?;
+            turn_part(session, part, Turn::To(0.0));
             return Ok(session.readings.message.clone().unwrap_or_default());
         }
         (Some(target), _) if body_of(target).is_some() => {
@@ -340,11 +326,8 @@ fn delete(session: &mut Session, aim: &Aim) -> Result<String, String> {
 /// Returns the part of the scene that an obstacle is, as the panel's page of parts lists it.
 fn part_of_obstacle(session: &Session, network: &Network, k: usize) -> Result<usize, String> {
     let ids = exchange::obstacle_ids(network, &session.tuning.changes());
-    let id = ids
-        .into_iter()
-        .find(|(number, _)| *number == k)
-        .map(|(_, id)| id);
-    let change = id.map(|(kind, own)| PartChange::Obstacle(kind, own));
+    let id = ids.into_iter().find(|(number, _)| *number == k);
+    let change = id.map(|(_, (kind, own))| PartChange::Obstacle(kind, own));
     let mut parts = session.tuning.parts.iter();
     let part = parts.position(|part| Some(part.change) == change);
     part.ok_or("This obstacle cannot be deleted.".into())

@@ -2,13 +2,13 @@
 
 use a3_files::rounding::short;
 use egui::{
-    Align2, Area, Color32, Context, CursorIcon, FontId, Id, Painter, Pos2, Rect, Response, Sense,
-    Shape, Stroke, StrokeKind, Ui, pos2, vec2,
+    Color32, Context, CursorIcon, Id, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui,
+    pos2, vec2,
 };
 
 use super::super::style::{FAINT, INK, TEXT};
-use super::super::widgets::{SHEET, slider};
-use crate::session::{Action, Dial, DialScale, Measure, PanelRequest, Session, Tool, Turn};
+use super::super::widgets::{Asks, LEFT, MIDDLE, SHEET, ask, fixed, slider, write};
+use crate::session::{Dial, DialScale, Measure, PanelRequest, Session, Tool, Turn};
 
 /// Smallest and largest width of a button, and its height (points).
 const BUTTON: [f32; 3] = [49.0, 62.0, 46.0];
@@ -27,19 +27,17 @@ const CHOSEN: Color32 = Color32::from_rgb(246, 246, 244);
 /// Colour of the tool under the pointer.
 const HOVERED: Color32 = Color32::from_rgb(214, 216, 220);
 
-/// Draws the palette, if it is open, and returns the request of the mouse.
-pub fn show(ctx: &Context, session: &Session) -> Option<Action> {
+/// Draws the palette, if it is open.
+pub fn show(ctx: &Context, session: &Session) {
     let (readings, editor) = (&session.readings, &session.panel.editor);
     if !editor.open || readings.help || readings.asks_to_quit || session.list.is_some() {
-        return None;
+        return;
     }
     let room = ctx.content_rect().shrink(GAP);
     let count = Tool::ALL.len();
     let inside = room.width() - 2.0 * PAD;
-    let button_size = vec2(
-        (inside / count as f32).clamp(BUTTON[0], BUTTON[1]),
-        BUTTON[2],
-    );
+    let [least, most, high] = BUTTON;
+    let button_size = vec2((inside / count as f32).clamp(least, most), high);
     let columns = ((inside / button_size.x) as usize).clamp(1, count);
     let rows = count.div_ceil(columns);
     let width = columns as f32 * button_size.x + 2.0 * PAD;
@@ -50,51 +48,40 @@ pub fn show(ctx: &Context, session: &Session) -> Option<Action> {
     let height = rows as f32 * BUTTON[2] + lines as f32 * SLIDERS + 2.0 * PAD;
     let left = room.center().x - 0.5 * width;
     let place = Rect::from_min_size(pos2(left, room.bottom() - height), vec2(width, height));
-    let mut request = None;
-    Area::new(Id::unique("tools"))
-        .fixed_pos(place.min)
-        .constrain(false)
-        .fade_in(false)
-        .show(ctx, |ui| {
-            ui.allocate_rect(place, Sense::click_and_drag());
-            let edge = Stroke::new(1.0, FAINT.gamma_multiply(0.35));
-            ui.painter()
-                .rect(place, 9.0, SHEET, edge, StrokeKind::Inside);
-            let inside = place.shrink(PAD);
-            for (k, tool) in Tool::ALL.into_iter().enumerate() {
-                let cell = vec2(
-                    (k % columns) as f32 * button_size.x,
-                    (k / columns) as f32 * button_size.y,
-                );
-                let rect = Rect::from_min_size(inside.min + cell, button_size);
-                if button(ui, rect, tool, tool == editor.tool) {
-                    request = Some(PanelRequest::Tool(tool));
-                }
-            }
-            let top = inside.top() + rows as f32 * button_size.y;
-            let all = measures.len().min(beside) as f32 * slider_width;
-            let left = inside.center().x - 0.5 * all;
-            for (k, measure) in measures.iter().enumerate() {
-                let size = vec2(slider_width, SLIDERS);
-                let cell = vec2((k % beside) as f32, (k / beside) as f32) * size;
-                let rect = Rect::from_min_size(pos2(left, top) + cell, size);
-                request = quantity(ui, rect, session, *measure).or(request);
-            }
-            if measures.is_empty() {
-                let at = pos2(inside.center().x, top + 0.5 * SLIDERS);
-                let font = FontId::proportional(12.5);
-                let words = help(editor.tool);
-                ui.painter()
-                    .text(at, Align2::CENTER_CENTER, words, font, FAINT);
-            }
-        });
-    request.map(Action::Panel)
+    fixed(ctx, Id::unique("tools"), place.min, |ui| {
+        ui.allocate_rect(place, Sense::click_and_drag());
+        let edge = Stroke::new(1.0, FAINT.gamma_multiply(0.35));
+        ui.painter()
+            .rect(place, 9.0, SHEET, edge, StrokeKind::Inside);
+        let inside = place.shrink(PAD);
+        let cell = |k: usize, of: usize| vec2((k % of) as f32, (k / of) as f32);
+        for k in 0..count {
+            let at = inside.min + cell(k, columns) * button_size;
+            let rect = Rect::from_min_size(at, button_size);
+            button(ui, rect, k, editor.tool);
+        }
+        let top = inside.top() + rows as f32 * button_size.y;
+        let all = measures.len().min(beside) as f32 * slider_width;
+        let left = inside.center().x - 0.5 * all;
+        for (k, measure) in measures.iter().enumerate() {
+            let size = vec2(slider_width, SLIDERS);
+            let rect = Rect::from_min_size(pos2(left, top) + cell(k, beside) * size, size);
+            quantity(ui, rect, session, *measure);
+        }
+        if measures.is_empty() {
+            let at = pos2(inside.center().x, top + 0.5 * SLIDERS);
+            let (.., help) = Tool::ALL[editor.tool as usize];
+            write(ui.painter(), at, MIDDLE, help, 12.5, FAINT);
+        }
+    });
 }
 
-/// Draws the button of a tool, and returns whether it was clicked.
-fn button(ui: &Ui, rect: Rect, tool: Tool, chosen: bool) -> bool {
-    let id = Id::unique(("tool", tool as usize));
-    let response: Response = ui.interact(rect, id, Sense::click());
+/// Draws the button of tool k.
+fn button(ui: &Ui, rect: Rect, k: usize, chosen: Tool) {
+    let (tool, name, help) = Tool::ALL[k];
+    let chosen = tool == chosen;
+    let id = Id::unique(("tool", k));
+    let response = ui.interact(rect, id, Sense::click());
     let painter = ui.painter();
     let inside = rect.shrink(2.0);
     if chosen {
@@ -106,14 +93,15 @@ fn button(ui: &Ui, rect: Rect, tool: Tool, chosen: bool) -> bool {
     let colour = if chosen { INK } else { TEXT };
     draw(painter, tool, rect.center() - vec2(0.0, 7.0), colour);
     let at = pos2(rect.center().x, rect.bottom() - 11.0);
-    let font = FontId::proportional(if rect.width() < 56.0 { 9.5 } else { 11.0 });
-    painter.text(at, Align2::CENTER_CENTER, name(tool), font, colour);
+    let size = if rect.width() < 56.0 { 9.5 } else { 11.0 };
+    write(painter, at, MIDDLE, name, size, colour);
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
-    response.on_hover_text(help(tool)).clicked()
+    let response = response.on_hover_text(help);
+    response.asks(PanelRequest::Tool(tool));
 }
 
 /// Draws the name, the slider and the value of a quantity.
-fn quantity(ui: &Ui, rect: Rect, session: &Session, measure: Measure) -> Option<PanelRequest> {
+fn quantity(ui: &Ui, rect: Rect, session: &Session, measure: Measure) {
     let [fitting, value] = session.panel.editor.both(measure);
     let (name, unit) = match measure {
         Measure::Size => ("size", "m"),
@@ -121,73 +109,19 @@ fn quantity(ui: &Ui, rect: Rect, session: &Session, measure: Measure) -> Option<
         Measure::Mass | Measure::PointMass => ("mass", "kg"),
         Measure::Stiffness => ("stiffness", "N/m"),
     };
-    let scale = DialScale::Log {
-        from: fitting / SPAN,
-        to: fitting * SPAN,
-    };
+    let scale = DialScale::Log([fitting / SPAN, fitting * SPAN]);
     let words = format!("{} {unit}", short(value, 2));
-    let dial = Dial {
-        value,
-        own: fitting,
-        scale,
-        words,
-    };
+    let dial = Dial::new(value, fitting, scale, words);
     let (painter, y) = (ui.painter(), rect.center().y);
-    let font = FontId::proportional(12.0);
-    let left = rect.left() + 6.0;
-    let written = painter.text(
-        pos2(left, y),
-        Align2::LEFT_CENTER,
-        name,
-        font.clone(),
-        FAINT,
-    );
+    let at = pos2(rect.left() + 6.0, y);
+    let written = write(painter, at, LEFT, name, 12.0, FAINT);
     let right = rect.right() - 62.0;
     let track = Rect::from_x_y_ranges(written.right() + 4.0..=right, rect.y_range());
-    painter.text(
-        pos2(right + 2.0, y),
-        Align2::LEFT_CENTER,
-        &dial.words,
-        font,
-        TEXT,
-    );
+    let at = pos2(right + 2.0, y);
+    write(painter, at, LEFT, &dial.words, 12.0, TEXT);
     let id = Id::unique(("measure", measure as usize));
-    let Some(Turn::To(value)) = slider(ui, track, id, &dial) else {
-        return None;
-    };
-    Some(PanelRequest::SetMeasure(measure, short(value, 2)))
-}
-
-fn name(tool: Tool) -> &'static str {
-    match tool {
-        Tool::ThrowBall => "throw ball",
-        Tool::ThrowBox => "throw box",
-        Tool::AddBall => "ball",
-        Tool::AddBox => "box",
-        Tool::Particle => "particle",
-        Tool::Spring => "spring",
-        Tool::Rod => "rod",
-        Tool::Rope => "rope",
-        Tool::Delete => "delete",
-    }
-}
-
-/// Says how a tool is used.
-fn help(tool: Tool) -> &'static str {
-    match tool {
-        Tool::ThrowBall => "Click where the ball shall hit; drag there to throw it faster.",
-        Tool::ThrowBox => "Click where the box shall hit; drag there to throw it faster.",
-        Tool::AddBall => "Click on what the ball shall lie.",
-        Tool::AddBox => "Click on what the box shall stand.",
-        Tool::Particle => "Click where the particle shall be.",
-        Tool::Spring => "Drag from one particle to another to join them by a spring.",
-        Tool::Rod => {
-            "Drag from one particle to another to join them by a rod, whose length never changes."
-        }
-        Tool::Rope => "Drag from one particle to another to join them by a rope, which only pulls.",
-        Tool::Delete => {
-            "Click a particle, a spring, a rod, a rope, a body or an obstacle to delete it."
-        }
+    if let Some(Turn::To(value)) = slider(ui, track, id, &dial) {
+        ask(ui, PanelRequest::SetMeasure(measure, short(value, 2)));
     }
 }
 

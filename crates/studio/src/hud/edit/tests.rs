@@ -328,7 +328,7 @@ fn random_edits_can_all_be_undone() {
                 link: Some(ends).filter(|_| next(3) == 0),
                 ..at([x - 5.0, y, z])
             };
-            let tool = Tool::ALL[next(Tool::ALL.len())];
+            let (tool, ..) = Tool::ALL[next(Tool::ALL.len())];
             let before = session.scenes.shown.source.description.clone();
             if tool.joins() && next(4) > 0 {
                 session.panel.editor.tool = tool;

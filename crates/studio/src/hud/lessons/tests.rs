@@ -62,7 +62,7 @@ impl Asked {
             Self::Radius => run.position(0).norm(),
             Self::Energy => run.energy().unwrap().total(),
             Self::Steps => run.blow_up().unwrap().step as f64,
-            Self::Limit => 1e3 * session.runs.panes[0].limit.limit().unwrap().step,
+            Self::Limit => 1e3 * session.runs.panes[0].limit.limit.unwrap().step,
             Self::Ratio | Self::Gain(..) => errors(session),
         }
     }

@@ -1,10 +1,10 @@
 //! Rows of the parts of a scene: a switch, a name, and whether the part is needed.
 
 use egui::text::{LayoutJob, TextWrapping};
-use egui::{Align2, Color32, FontId, Id, Rect, Sense, Ui, pos2, vec2};
+use egui::{Align2, Color32, FontId, Id, Rect, Ui, pos2, vec2};
 
 use super::super::style::{FAINT, INK, TEXT};
-use super::super::widgets::{CHOSEN, HOVERED, button, keep_in_sight, switch};
+use super::super::widgets::{Asks, CHOSEN, ask, button, keep_in_sight, row, switch};
 use crate::session::panel::{is_as_in_scene, is_in, measured, measuring_row, part_row};
 use crate::session::{PanelRequest, Question, Session, Turn};
 
@@ -15,16 +15,14 @@ const MEASURING_HEIGHT: f32 = 34.0;
 /// Distance of the name from the left edge (points).
 const NAME_LEFT: f32 = 46.0;
 
-/// Draws the rows of the parts from the top of a room. Returns the bottom of the last row, and the
-/// request of the mouse.
-pub fn show(ui: &Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest>) {
-    let mut request = None;
+/// Draws the rows of the parts from the top of a room. Returns the bottom of the last row.
+pub fn show(ui: &Ui, room: Rect, session: &Session) -> f32 {
     let mut top = room.top();
     let place = |top: f32, height: f32| {
         Rect::from_min_size(pos2(room.left(), top), vec2(room.width(), height))
     };
     if session.measuring.answerer.is_some() {
-        request = measuring(ui, place(top, MEASURING_HEIGHT), session);
+        measuring(ui, place(top, MEASURING_HEIGHT), session);
         top += MEASURING_HEIGHT + 6.0;
     }
     let count = session.tuning.parts.len();
@@ -34,14 +32,14 @@ pub fn show(ui: &Ui, room: Rect, session: &Session) -> (f32, Option<PanelRequest
         if part == chosen {
             keep_in_sight(ui, "parts", place, part);
         }
-        request = row(ui, place, session, part).or(request);
+        part_row_of(ui, place, session, part);
         top += HEIGHT;
     }
-    (top, request)
+    top
 }
 
 /// Draws the row that measures the parts.
-fn measuring(ui: &Ui, rect: Rect, session: &Session) -> Option<PanelRequest> {
+fn measuring(ui: &Ui, rect: Rect, session: &Session) {
     let place = rect.shrink2(vec2(0.0, 3.0));
     let number = measuring_row();
     let known = session.measuring.known_of(Question::Simplify);
@@ -64,24 +62,18 @@ fn measuring(ui: &Ui, rect: Rect, session: &Session) -> Option<PanelRequest> {
         None => format!("{} Key q shows the table.", Question::Simplify.about()),
     };
     let response = button(ui, place, words, &state).on_hover_text(about);
-    response
-        .clicked()
-        .then_some(PanelRequest::Turn(number, Turn::Toggle))
+    response.asks(PanelRequest::Turn(number, Turn::Toggle));
 }
 
 /// Draws the row of a part.
-fn row(ui: &Ui, rect: Rect, session: &Session, part: usize) -> Option<PanelRequest> {
+fn part_row_of(ui: &Ui, rect: Rect, session: &Session, part: usize) {
     let number = part_row(part);
     let id = |what| Id::unique((what, "part", part));
-    let whole = ui.interact(rect.expand2(vec2(6.0, 0.0)), id("row"), Sense::click());
-    let chosen = session.panel.row == number;
-    let painter = ui.painter();
-    if chosen || whole.hovered() {
-        let colour = if chosen { CHOSEN } else { HOVERED };
-        painter.rect_filled(rect.expand2(vec2(6.0, -0.5)), 5.0, colour);
-    }
     let (name, on) = (&session.tuning.parts[part].name, is_in(session, part));
     let measured = measured(session, part).and_then(in_words);
+    let (chosen, about) = (session.panel.row == number, measured.as_deref());
+    row(ui, rect, id("row"), chosen, || tooltip(name, about)).asks(PanelRequest::ChooseRow(number));
+    let painter = ui.painter();
     let as_in_scene = is_as_in_scene(session, part);
     let write = |y: f32, words: &str, size: f32, colour: Color32| {
         let mut job =
@@ -100,10 +92,9 @@ fn row(ui: &Ui, rect: Rect, session: &Session, part: usize) -> Option<PanelReque
         (false, None) => "left out",
     };
     write(26.5, state, 11.5, if as_in_scene { FAINT } else { INK });
-    let turn = switch(ui, rect, id("switch"), on);
-    let whole = whole.on_hover_text(tooltip(name, measured.as_deref()));
-    turn.map(|turn| PanelRequest::Turn(number, turn))
-        .or_else(|| whole.clicked().then_some(PanelRequest::ChooseRow(number)))
+    if let Some(turn) = switch(ui, rect, id("switch"), on) {
+        ask(ui, PanelRequest::Turn(number, turn));
+    }
 }
 
 /// Returns a row of the table of what can be left out, without its name, in words.

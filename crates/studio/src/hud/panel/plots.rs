@@ -131,10 +131,8 @@ pub fn draw(painter: &Painter, room: Rect, samples: &Samples, pointer: Option<Po
     });
     // Values at the pointer replace the titles and the names of the curves.
     let draw = |pointed: Option<&Sample>| {
-        let panels: Vec<_> = shown
-            .clone()
-            .map(|it| it.panel(samples, from, pointed))
-            .collect();
+        let panels = shown.clone().map(|it| it.panel(samples, from, pointed));
+        let panels: Vec<_> = panels.collect();
         let highest = MAX_HEIGHT_PER_WIDTH * room.width() * panels.len() as f32;
         let sheet = [room.width(), room.height().min(highest)].map(f64::from);
         let chart = LineChart {

@@ -68,8 +68,7 @@ fn axes(session: &Session) -> Vec<Axes> {
     if settings.mode != Mode::Time {
         return vec![plotting::axes(settings, &session.runs.panes).map(Some)];
     }
-    let all = Variable::ALL.into_iter();
-    let shown = all.filter(|it| settings.shown.contains(it) && has(session, *it));
+    let shown = Variable::all().filter(|it| settings.shown.contains(it) && has(session, *it));
     shown
         .map(|variable| [None, Some(Quantity::of_each(variable))])
         .collect()
@@ -77,11 +76,8 @@ fn axes(session: &Session) -> Vec<Axes> {
 
 /// Returns the time (s) at the end of the plots: the latest of any pane.
 fn latest(session: &Session) -> f64 {
-    let series = session
-        .runs
-        .panes
-        .iter()
-        .flat_map(|pane| pane.traces.iter());
+    let panes = session.runs.panes.iter();
+    let series = panes.flat_map(|pane| pane.traces.iter());
     let last = series.filter_map(|(_, series)| series.rows().next_back());
     last.map(|row| row.time).fold(0.0, f64::max)
 }
@@ -220,7 +216,7 @@ fn foot(session: &Session) -> String {
 
 /// Says when points of the section are taken.
 fn when(session: &Session) -> String {
-    match session.runs.panes[0].traces.trigger() {
+    match session.runs.panes[0].traces.trigger {
         Trigger::Off => String::new(),
         Trigger::Period(period) => format!("once in {} s", signed(period)),
         Trigger::Rises(variable, value) => {
@@ -238,10 +234,9 @@ fn pieces(session: &Session, axes: Axes, source: [usize; 2], detail: usize) -> V
     let width = settings.span / detail as f64;
     let mut pieces = vec![vec![]];
     let rows = rows(session, source);
-    let places: Vec<_> = rows
-        .iter()
-        .map(|row| (row.time, place(session, axes, source, row)))
-        .collect();
+    let places = rows.iter();
+    let places = places.map(|row| (row.time, place(session, axes, source, row)));
+    let places: Vec<_> = places.collect();
     let part = |time: f64| match settings.mode {
         Mode::Section => time,
         Mode::Time => (time / width).floor(),
@@ -326,11 +321,8 @@ fn picture(session: &Session) -> Result<Vec<u8>, Failure> {
 /// quantities on the axes.
 fn table(session: &Session) -> Result<Vec<u8>, csv::Error> {
     let all_axes = axes(session);
-    let picks: Vec<Pick> = session.runs.panes[0]
-        .traces
-        .iter()
-        .map(|(pick, _)| *pick)
-        .collect();
+    let traces = session.runs.panes[0].traces.iter();
+    let picks: Vec<Pick> = traces.map(|(pick, _)| *pick).collect();
     let is_shown = |n: usize| all_axes.iter().any(|it| picks_of(*it, &picks).contains(&n));
     let mut columns: Vec<Quantity> = vec![];
     for quantity in all_axes.iter().copied().flatten().flatten() {

@@ -14,178 +14,97 @@ const MIN_CHART: f32 = 150.0;
 /// Largest share of the room that formulas take beside a chart.
 const SHARE: f32 = 0.45;
 
-/// The step of each method by its name, from y at the time t over h.
-const METHODS: [(&str, &str); 23] = [
-    ("euler", "y₁ = y + h f(t, y)"),
-    (
-        "trapezoid",
-        "k₁ = f(t, y), k₂ = f(t + h, y + h k₁), y₁ = y + h/2 (k₁ + k₂)",
-    ),
-    ("midpoint", "y₁ = y + h f(t + h/2, y + h/2 f(t, y))"),
-    (
-        "rk4",
-        "k₁ = f(t, y), k₂ = f(t + h/2, y + h/2 k₁), k₃ = f(t + h/2, y + h/2 k₂), \
-         k₄ = f(t + h, y + h k₃), y₁ = y + h/6 (k₁ + 2 k₂ + 2 k₃ + k₄)",
-    ),
-    ("symplectic", "v₁ = v + h F(t, x, v) / m, x₁ = x + h v₁"),
-    (
-        "verlet",
-        "Half a drift, a kick v + h F / m, half a drift. A drift is the motion under gravity and \
-         drag alone, x + h v without them. Forces that depend on v take three kicks of h/3.",
-    ),
-    (
-        "pefrl",
-        "Five drifts by ξ, χ, 1 - 2 (χ + ξ), χ, ξ of h, and between them kicks v + h F / m by \
-         1/2 - λ, λ, λ, 1/2 - λ of h, with ξ = 0.1786, χ = -0.0663, λ = -0.2123.",
-    ),
-    (
-        "dopri5",
-        "k₁ = f(t, y), each next k = f(t + c h, y + h Σ a k) of those before, up to k₇; \
-         y₁ = y + h Σ b k. h keeps the error, estimated by another h Σ d k, within the tolerance.",
-    ),
-    (
-        "dop853",
-        "k₁ = f(t, y), each next k = f(t + c h, y + h Σ a k) of those before, up to k₁₂; \
-         y₁ = y + h Σ b k. h keeps the error, estimated by two other sums, within the tolerance.",
-    ),
-    (
-        "implicit",
-        "y₁ = y + h f(t + h, y₁), by Newton's method: for forces, by one iteration",
-    ),
-    (
-        "rkf45",
-        "k₁ = f(t, y), each next k = f(t + c h, y + h Σ a k) of those before, up to k₆; \
-         y₁ = y + h Σ b k. h keeps the error, estimated by another h Σ d k, within the tolerance.",
-    ),
-    (
-        "tr-bdf2",
-        "Y = y + g h (f(t, y) + f(t + 2 g h, Y)), y₁ = y + h (w f(t, y) + w f(t + 2 g h, Y) + \
-         g f(t + h, y₁)), with g = 1 - 1/√2, w = √2/4, solved by Newton's method",
-    ),
-    (
-        "implicit-midpoint",
-        "Y = y + h/2 f(t + h/2, Y), solved by Newton's method; y₁ = 2 Y - y",
-    ),
-    (
-        "verner65",
-        "k₁ = f(t, y), each next k = f(t + c h, y + h Σ a k) of those before, up to k₉; \
-         y₁ = y + h Σ b k. h keeps the error, estimated by another h Σ d k, within the tolerance.",
-    ),
-    (
-        "srkn11",
-        "Twelve kicks v + b h F / m, and between them eleven drifts by a of h: each the motion \
-         under gravity and drag alone, x + a h v without them.",
-    ),
-    (
-        "dprkn86",
-        "X = x + c h v + h² Σ a F(X) / m of the stages before, nine of them; x₁ = x + h v + \
-         h² Σ b F(X) / m, v₁ = v + h Σ d F(X) / m. h keeps the estimated error within the tolerance.",
-    ),
-    (
-        "dprkn1210",
-        "X = x + c h v + h² Σ a F(X) / m of the stages before, seventeen of them; x₁ = x + h v + \
-         h² Σ b F(X) / m, v₁ = v + h Σ d F(X) / m. h keeps the estimated error within the tolerance.",
-    ),
-    (
-        "bdf",
-        "y₁ = Σ a y + b h f(t + h, y₁) over the last 1 to 5 states y, solved by Newton's method. \
-         h and their number keep the estimated error within the tolerance.",
-    ),
-    (
-        "xpbd",
-        "x₁ = x + h v*, with v* = (m v + h F) / (m + h c) of all but the springs. Then each spring \
-         in turn moves its ends along it by w ∆λ, where (without damping) ∆λ = (r - L - α λ) / \
-         (w + w' + α), w = 1/(m + h c), α = 1/(k h²). v₁ = (x₁ - x) / h",
-    ),
-    (
-        "xpbd10",
-        "x₁ = x + h v*, with v* = (m v + h F) / (m + h c) of all but the springs. Then ten times \
-         each spring in turn moves its ends along it by w ∆λ, where (without damping) ∆λ = \
-         (r - L - α λ) / (w + w' + α), w = 1/(m + h c), α = 1/(k h²). v₁ = (x₁ - x) / h",
-    ),
-    (
-        "vbd",
-        "x₁ = x + h v*, with v* = (m v + h F) / (m + h c) of all but the springs. Then ten times \
-         each particle in turn takes a step of Newton's method to the least (without damping) \
-         (m + h c) |x₁ - x - h v*|² / (2 h²) + U(x₁). v₁ = (x₁ - x) / h",
-    ),
-    (
-        "implicit-damping",
-        "Half a drift, then at fixed positions A k₁ = F(x, v), A k₂ = F(x, v + h k₁) - 2 m k₁, \
-         v + h (3/2 k₁ + 1/2 k₂), then half a drift, with A = m - g h ∂F/∂v, g = 1 - 1/√2",
-    ),
-    (
-        "radau",
-        "Y = y + h Σ a f(t + c h, Y) for three Y at once, with c = (4 - √6)/10, (4 + √6)/10 and 1, \
-         solved by Newton's method; y₁ = Y₃. h keeps the estimated error within the tolerance.",
-    ),
-];
+/// The step of each method, a line for each: its name, and the step from y at the time t over h.
+const METHODS: &str = "\
+    euler: y₁ = y + h f(t, y)
+    trapezoid: k₁ = f(t, y), k₂ = f(t + h, y + h k₁), y₁ = y + h/2 (k₁ + k₂)
+    midpoint: y₁ = y + h f(t + h/2, y + h/2 f(t, y))
+    rk4: k₁ = f(t, y), k₂ = f(t + h/2, y + h/2 k₁), k₃ = f(t + h/2, y + h/2 k₂), k₄ = f(t + h, y \
+        + h k₃), y₁ = y + h/6 (k₁ + 2 k₂ + 2 k₃ + k₄)
+    symplectic: v₁ = v + h F(t, x, v) / m, x₁ = x + h v₁
+    verlet: Half a drift, a kick v + h F / m, half a drift. A drift is the motion under gravity \
+        and drag alone, x + h v without them. Forces that depend on v take three kicks of h/3.
+    pefrl: Five drifts by ξ, χ, 1 - 2 (χ + ξ), χ, ξ of h, and between them kicks v + h F / m by \
+        1/2 - λ, λ, λ, 1/2 - λ of h, with ξ = 0.1786, χ = -0.0663, λ = -0.2123.
+    dopri5: k₁ = f(t, y), each next k = f(t + c h, y + h Σ a k) of those before, up to k₇; y₁ = y \
+        + h Σ b k. h keeps the error, estimated by another h Σ d k, within the tolerance.
+    dop853: k₁ = f(t, y), each next k = f(t + c h, y + h Σ a k) of those before, up to k₁₂; y₁ = \
+        y + h Σ b k. h keeps the error, estimated by two other sums, within the tolerance.
+    implicit: y₁ = y + h f(t + h, y₁), by Newton's method: for forces, by one iteration
+    rkf45: k₁ = f(t, y), each next k = f(t + c h, y + h Σ a k) of those before, up to k₆; y₁ = y \
+        + h Σ b k. h keeps the error, estimated by another h Σ d k, within the tolerance.
+    tr-bdf2: Y = y + g h (f(t, y) + f(t + 2 g h, Y)), y₁ = y + h (w f(t, y) + w f(t + 2 g h, Y) + \
+        g f(t + h, y₁)), with g = 1 - 1/√2, w = √2/4, solved by Newton's method
+    implicit-midpoint: Y = y + h/2 f(t + h/2, Y), solved by Newton's method; y₁ = 2 Y - y
+    verner65: k₁ = f(t, y), each next k = f(t + c h, y + h Σ a k) of those before, up to k₉; y₁ = \
+        y + h Σ b k. h keeps the error, estimated by another h Σ d k, within the tolerance.
+    srkn11: Twelve kicks v + b h F / m, and between them eleven drifts by a of h: each the motion \
+        under gravity and drag alone, x + a h v without them.
+    dprkn86: X = x + c h v + h² Σ a F(X) / m of the stages before, nine of them; x₁ = x + h v + \
+        h² Σ b F(X) / m, v₁ = v + h Σ d F(X) / m. h keeps the estimated error within the \
+        tolerance.
+    dprkn1210: X = x + c h v + h² Σ a F(X) / m of the stages before, seventeen of them; x₁ = x + \
+        h v + h² Σ b F(X) / m, v₁ = v + h Σ d F(X) / m. h keeps the estimated error within the \
+        tolerance.
+    bdf: y₁ = Σ a y + b h f(t + h, y₁) over the last 1 to 5 states y, solved by Newton's method. \
+        h and their number keep the estimated error within the tolerance.
+    xpbd: x₁ = x + h v*, with v* = (m v + h F) / (m + h c) of all but the springs. Then each \
+        spring in turn moves its ends along it by w ∆λ, where (without damping) ∆λ = (r - L - α \
+        λ) / (w + w' + α), w = 1/(m + h c), α = 1/(k h²). v₁ = (x₁ - x) / h
+    xpbd10: x₁ = x + h v*, with v* = (m v + h F) / (m + h c) of all but the springs. Then ten \
+        times each spring in turn moves its ends along it by w ∆λ, where (without damping) ∆λ = \
+        (r - L - α λ) / (w + w' + α), w = 1/(m + h c), α = 1/(k h²). v₁ = (x₁ - x) / h
+    vbd: x₁ = x + h v*, with v* = (m v + h F) / (m + h c) of all but the springs. Then ten times \
+        each particle in turn takes a step of Newton's method to the least (without damping) (m + \
+        h c) |x₁ - x - h v*|² / (2 h²) + U(x₁). v₁ = (x₁ - x) / h
+    implicit-damping: Half a drift, then at fixed positions A k₁ = F(x, v), A k₂ = F(x, v + h k₁) \
+        - 2 m k₁, v + h (3/2 k₁ + 1/2 k₂), then half a drift, with A = m - g h ∂F/∂v, g = 1 - \
+        1/√2
+    radau: Y = y + h Σ a f(t + c h, Y) for three Y at once, with c = (4 - √6)/10, (4 + √6)/10 and \
+        1, solved by Newton's method; y₁ = Y₃. h keeps the estimated error within the tolerance.
+";
 
-/// Each force and each other part of a network by its name.
-const FORCES: [(&str, &str); 22] = [
-    (
-        "springs",
-        "k (L - r) along each, of the length L and the rest length r",
-    ),
-    (
-        "springs that only pull",
-        "k (L - r) along each, 0 where L < r",
-    ),
-    (
-        "buckling",
-        "arcs of the curvature κ push by k κ² / (sin q / q - cos q), q = κ r/2",
-    ),
-    (
-        "solid",
-        "-∂U/∂x of the elastic energy U of each tetrahedron",
-    ),
-    ("gas pressure", "p ∂V/∂x of the volume V inside"),
-    (
-        "fluid",
-        "-m² Σ (p/ρ² + p'/ρ'² - k (v - v')·d / (r² + s²)) ∂W/∂x over the neighbours, d = x - x', \
-         r = |d|, ρ = m Σ W; k is proportional to the viscosity",
-    ),
-    ("spring damping", "c L' along each spring"),
-    (
-        "viscosity",
-        "against the rate of the strain of each tetrahedron",
-    ),
-    ("gravity", "m g"),
-    ("drag", "-c v"),
-    ("wind", "of the air on each triangle, or on each particle"),
-    (
-        "contact",
-        "k d ((d - g) / d)³ where a gap g is below the thickness d, times a factor of g' for \
-         damping or restitution",
-    ),
-    (
-        "attraction",
-        "-m (w² (x - p) + 2 w (v - p')) to the hand at p",
-    ),
-    ("own force", "one's own function"),
-    ("constraints", "those that keep all C(x) = 0: λ ∂C/∂x"),
-    ("motors", "torques on rigid bodies"),
-    ("sphere", "reaction and friction, as impulses"),
-    ("box", "reaction and friction, as impulses"),
-    ("capsule", "reaction and friction, as impulses"),
-    ("floor", "reaction and friction, as impulses"),
-    ("tearing", "a spring breaks at its largest L / r"),
-    ("strain limit", "springs are shortened to it"),
-];
-/// Those of them that are no forces, but act after each step.
-const AFTER: [&str; 6] = [
-    "sphere",
-    "box",
-    "capsule",
-    "floor",
-    "tearing",
-    "strain limit",
-];
+/// The forces of a network, a line for each.
+const FORCES: &str = "\
+    springs: k (L - r) along each, of the length L and the rest length r
+    springs that only pull: k (L - r) along each, 0 where L < r
+    buckling: arcs of the curvature κ push by k κ² / (sin q / q - cos q), q = κ r/2
+    solid: -∂U/∂x of the elastic energy U of each tetrahedron
+    gas pressure: p ∂V/∂x of the volume V inside
+    fluid: -m² Σ (p/ρ² + p'/ρ'² - k (v - v')·d / (r² + s²)) ∂W/∂x over the neighbours, d = x - \
+        x', r = |d|, ρ = m Σ W; k is proportional to the viscosity
+    spring damping: c L' along each spring
+    viscosity: against the rate of the strain of each tetrahedron
+    gravity: m g
+    drag: -c v
+    wind: of the air on each triangle, or on each particle
+    contact: k d ((d - g) / d)³ where a gap g is below the thickness d, times a factor of g' for \
+        damping or restitution
+    attraction: -m (w² (x - p) + 2 w (v - p')) to the hand at p
+    own force: one's own function
+    constraints: those that keep all C(x) = 0: λ ∂C/∂x
+    motors: torques on rigid bodies
+";
+
+/// Its parts that are no forces, but act after each step.
+const AFTER: &str = "\
+    sphere: reaction and friction, as impulses
+    box: reaction and friction, as impulses
+    capsule: reaction and friction, as impulses
+    floor: reaction and friction, as impulses
+    tearing: a spring breaks at its largest L / r
+    strain limit: springs are shortened to it
+";
+
+/// Returns the names and the formulas of a table.
+fn rows(table: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let lines = table.lines();
+    lines.filter_map(|line| line.trim().split_once(": "))
+}
 
 /// Returns the formula by a name in a table.
-fn formula(table: &[(&'static str, &'static str)], name: &str) -> Option<&'static str> {
-    let mut rows = table.iter();
-    rows.find(|row| row.0 == name).map(|row| row.1)
+fn formula(table: &'static str, name: &str) -> Option<&'static str> {
+    rows(table).find(|row| row.0 == name).map(|row| row.1)
 }
 
 /// Returns what is computed in some runs of one scene: names and formulas.
@@ -194,7 +113,7 @@ fn lines<'a>(runs: impl Iterator<Item = &'a Simulation>) -> Vec<(String, &'stati
     let mut network: Option<&Network> = None;
     for run in runs {
         let name = run.method().name;
-        let own = formula(&METHODS, name).unwrap_or("a method of one's own");
+        let own = formula(METHODS, name).unwrap_or("a method of one's own");
         if !lines.iter().any(|line| line.0 == name) {
             lines.push((name.into(), own));
         }
@@ -207,8 +126,12 @@ fn lines<'a>(runs: impl Iterator<Item = &'a Simulation>) -> Vec<(String, &'stati
     let whole = "y = [x | v], x' = v, m v' = F(t, x, v), the sum of these forces:";
     lines.push(("y' = f(t, y)".into(), whole));
     let all = network.forces_in_use().into_iter();
-    let (after, forces): (Vec<_>, Vec<_>) = all.partition(|name| AFTER.contains(name));
-    let own = |name: &'static str| (name.into(), formula(&FORCES, name).unwrap_or_default());
+    let (after, forces): (Vec<_>, Vec<_>) = all.partition(|name| formula(AFTER, name).is_some());
+    let all = [FORCES, AFTER];
+    let own = |name: &'static str| {
+        let mut found = all.into_iter().filter_map(|table| formula(table, name));
+        (name.into(), found.next().unwrap_or_default())
+    };
     lines.extend(forces.into_iter().map(own));
     if !after.is_empty() {
         lines.push(("then".into(), "after each step:"));
@@ -262,7 +185,7 @@ mod tests {
     #[test]
     fn every_method_and_every_force_of_the_scenes_has_its_formula() {
         for method in integrators::METHODS {
-            assert!(formula(&METHODS, method.name).is_some(), "{}", method.name);
+            assert!(formula(METHODS, method.name).is_some(), "{}", method.name);
         }
         let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes");
         let files = std::fs::read_dir(docs)
@@ -290,10 +213,8 @@ mod tests {
         }
         // Hands pull only in a window, and only a program adds forces of its own.
         let others = ["attraction", "own force"];
-        let rows = FORCES
-            .iter()
-            .map(|row| row.0)
-            .filter(|name| !others.contains(name));
+        let rows = [FORCES, AFTER].into_iter().flat_map(rows).map(|row| row.0);
+        let rows = rows.filter(|name| !others.contains(name));
         let unseen: Vec<_> = rows
             .filter(|name| !seen.iter().any(|it| it == name))
             .collect();
@@ -308,7 +229,7 @@ mod tests {
         let at = |name: &str| lines.iter().position(|line| line.0 == name);
         let (forces, then) = (at("y' = f(t, y)").unwrap(), at("then").unwrap());
         assert_eq!(lines[then].1, "after each step:");
-        let is_after = |line: &(String, _)| AFTER.contains(&line.0.as_str());
+        let is_after = |line: &(String, _)| formula(AFTER, &line.0).is_some();
         assert!(!lines[forces..then].iter().any(is_after), "{lines:?}");
         assert!(then + 1 < lines.len() && lines[then + 1..].iter().all(is_after));
     }
@@ -320,9 +241,12 @@ mod tests {
         output.textures_delta.set.clear();
         output.textures_delta.free.clear();
         let font = FontId::proportional(12.5);
-        let all = METHODS.iter().chain(&FORCES).flat_map(|row| row.1.chars());
+        let all = [METHODS, FORCES, AFTER]
+            .map(str::chars)
+            .into_iter()
+            .flatten();
         let lost: Vec<_> = all
-            .filter(|c| !ctx.fonts_mut(|fonts| fonts.has_glyph(&font, *c)))
+            .filter(|c| *c != '\n' && !ctx.fonts_mut(|fonts| fonts.has_glyph(&font, *c)))
             .collect();
         assert!(lost.is_empty(), "{lost:?}");
     }

@@ -7,7 +7,7 @@ use egui::{FontId, Pos2, Rect, Ui, pos2, vec2};
 
 use super::super::charts::line;
 use super::super::style::{FAINT, TEXT};
-use super::super::widgets::{LEFT, MIDDLE, chip, write};
+use super::super::widgets::{Asks, LEFT, MIDDLE, ask, chip, is_asked, write};
 use super::super::words::signed;
 use super::chart::{has, run_name, style};
 use crate::session::plotting::{axes, drive, fitting_trigger};
@@ -28,17 +28,13 @@ pub struct Rows<'a> {
     pub session: &'a Session,
     /// The room that is left.
     pub room: Rect,
-    /// The request of the mouse.
-    pub request: Option<PlotRequest>,
 }
 
 impl Rows<'_> {
     /// Draws a button in a flow.
-    fn button(&mut self, flow: &mut Flow, words: &str, chosen: bool, wish: PlotRequest) {
+    fn button(&self, flow: &mut Flow, words: &str, chosen: bool, wish: PlotRequest) {
         let place = flow.words(self.ui, words, 8.0);
-        if chip(self.ui, place, words, chosen).clicked() {
-            self.request = Some(wish);
-        }
+        chip(self.ui, place, words, chosen).asks(wish);
     }
 
     /// Writes words in a flow.
@@ -90,7 +86,7 @@ impl Rows<'_> {
     }
 
     /// Draws one thing that is plotted.
-    fn pick(&mut self, place: Rect, name: &str, source: [usize; 2], grey: bool, pick: Pick) {
+    fn pick(&self, place: Rect, name: &str, source: [usize; 2], grey: bool, pick: Pick) {
         let (ui, look) = (self.ui, style(self.session, source));
         let response = chip(ui, place, "", false);
         let painter = ui.painter();
@@ -106,9 +102,8 @@ impl Rows<'_> {
         let at = pos2(place.right() - 9.0, at.y);
         let ink = if response.hovered() { TEXT } else { FAINT };
         write(painter, at, MIDDLE, "✖", 10.0, ink);
-        if response.on_hover_text("Plot it no longer").clicked() {
-            self.request = Some(PlotRequest::Toggle(pick));
-        }
+        let response = response.on_hover_text("Plot it no longer");
+        response.asks(PlotRequest::Toggle(pick));
     }
 
     /// Offers the springs, rods and ropes of the particle whose springs are listed.
@@ -182,7 +177,7 @@ impl Rows<'_> {
 
     /// Draws of what the quantity on an axis is, if several things have its variable. A click goes
     /// on to the next one.
-    fn owner(&mut self, flow: &mut Flow, axis: usize, now: Quantity) {
+    fn owner(&self, flow: &mut Flow, axis: usize, now: Quantity) {
         let picks = self.session.runs.panes[0].traces.iter();
         let own = picks.map(|(pick, _)| *pick);
         let own: Vec<_> = own.filter(|pick| now.variable.is_of(pick.kind())).collect();
@@ -200,18 +195,17 @@ impl Rows<'_> {
 
     /// Returns the variables of anything that is plotted.
     fn all_variables(&self) -> Vec<Variable> {
-        let all = Variable::ALL.into_iter();
+        let all = Variable::all();
         all.filter(|it| has(self.session, *it)).collect()
     }
 
     /// Draws when points of the section are taken.
     fn trigger(&mut self, across: Variable) {
         let session = self.session;
-        let trigger = session.runs.panes[0].traces.trigger();
+        let trigger = session.runs.panes[0].traces.trigger;
         let fitting = fitting_trigger(&session.runs.panes, across);
-        if fitting != trigger {
-            let wish = PlotRequest::Trigger(fitting);
-            self.request.get_or_insert(wish);
+        if fitting != trigger && !is_asked(self.ui) {
+            ask(self.ui, PlotRequest::Trigger(fitting));
         }
         let run = &session.runs.panes[0].simulation;
         let mut flow = Flow::new(self.room);
@@ -249,11 +243,8 @@ impl Rows<'_> {
 /// Returns the step by which the value of a variable that a section passes is changed: a round part
 /// of its range.
 fn step(session: &Session, variable: Variable) -> f64 {
-    let traces = session
-        .runs
-        .panes
-        .iter()
-        .flat_map(|pane| pane.traces.iter());
+    let panes = session.runs.panes.iter();
+    let traces = panes.flat_map(|pane| pane.traces.iter());
     let of_kind = traces.filter(|(pick, _)| variable.is_of(pick.kind()));
     let values = of_kind.flat_map(|(_, series)| series.rows().map(|row| variable.of(row)));
     let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {

@@ -11,7 +11,7 @@ use super::values::{
     damping, drag, floor, gravity, gusts, material, network, own, radii, solver, sphere,
     springs_of, step, stiffness, strain_limit, strain_limits, switch,
 };
-use crate::session::{Change, Dial, DialScale, IS_PAGE, RunAction, Session, Tuning, Turn, looks};
+use crate::session::{Change, Dial, DialScale, RunAction, Session, Tuning, Turn, looks};
 
 /// A knob: a row of the table.
 #[derive(Clone, Copy)]
@@ -247,9 +247,8 @@ pub static KNOBS: &[Knob] = &[
         "The particle whose springs are listed and highlighted, by its number.",
         springs_of,
         |session, _, i| {
-            for pane in &mut session.runs.panes {
-                pane.show.springs_of = (i >= 0.0).then_some(i as usize);
-            }
+            let particle = (i >= 0.0).then_some(i as usize);
+            looks::each(&mut session.runs.panes, |show| show.springs_of = particle);
         },
     )),
     knob(
@@ -257,10 +256,9 @@ pub static KNOBS: &[Knob] = &[
         "The quantity that colours show.",
         colour,
         |session, _, k| {
-            looks::set_colour(
-                &mut session.runs.panes,
-                Quantity::ALL.get(k as usize).copied(),
-            );
+            let chosen = Quantity::ALL.get(k as usize).copied();
+            let panes = &mut session.runs.panes;
+            looks::each(panes, |show| show.colouring.set_quantity(chosen));
         },
     ),
     knob(
@@ -269,7 +267,8 @@ pub static KNOBS: &[Knob] = &[
         full_colour,
         |session, at, end| {
             let fits = end == session.runs.panes[at].show.colouring.scale.fitting;
-            looks::fix_scale(&mut session.runs.panes, (!fits).then_some(end));
+            let (panes, end) = (&mut session.runs.panes, (!fits).then_some(end));
+            looks::each(panes, |show| show.colouring.scale.fixed = end);
         },
     ),
     knob(
@@ -277,10 +276,9 @@ pub static KNOBS: &[Knob] = &[
         "The vectors that arrows show.",
         arrows,
         |session, _, k| {
-            looks::set_arrows(
-                &mut session.runs.panes,
-                Arrows::ALL.get(k as usize).copied(),
-            );
+            let chosen = Arrows::ALL.get(k as usize).copied();
+            let panes = &mut session.runs.panes;
+            looks::each(panes, |show| show.field.set_arrows(chosen));
         },
     ),
     knob(
@@ -289,10 +287,8 @@ pub static KNOBS: &[Knob] = &[
         style,
         |session, _, k| {
             let styles = Show::styles(session.runs.first());
-            looks::set_style(
-                &mut session.runs.panes,
-                styles.get(k as usize).copied().unwrap_or_default(),
-            );
+            let style = styles.get(k as usize).copied().unwrap_or_default();
+            looks::each(&mut session.runs.panes, |show| show.style = style);
         },
     ),
     starts_group(knob(
@@ -301,7 +297,7 @@ pub static KNOBS: &[Knob] = &[
         |session, _| Some(switch(session.runs.panes[0].show.dark, false)),
         |session, _, on| {
             session.panel.dark = Some(on != 0.0);
-            looks::set_dark(&mut session.runs.panes, on != 0.0);
+            looks::each(&mut session.runs.panes, |show| show.dark = on != 0.0);
         },
     )),
     knob(
@@ -321,7 +317,7 @@ pub static KNOBS: &[Knob] = &[
     knob(
         "film of",
         "Simulated time that key n films, in s.",
-        |session, _| (!IS_PAGE).then(|| film_seconds(session)),
+        film_seconds,
         |session, _, seconds| {
             session.panel.film_seconds = seconds;
         },

@@ -4,15 +4,13 @@
 mod knobs;
 mod parts;
 mod request;
-mod tune;
 mod undo;
 mod values;
 
 pub use knobs::Knob;
-pub use parts::{is_as_in_scene, is_in, measured, turn as turn_part};
+pub use parts::{is_as_in_scene, is_in, measured, tune, tuned, turn as turn_part};
 pub use request::{apply, request, type_key};
 pub use request::{measuring_row, numbers, part_row, rows, shows_parts};
-pub use tune::{tune, tuned};
 pub use undo::undo;
 pub use undo::{edit, of_one_body};
 pub use values::pane;

@@ -7,7 +7,7 @@ use super::parts;
 use super::undo::edit;
 use super::values::pane;
 use crate::session::{Dial, MeasureRequest, PanelKey, PanelRequest, Question, Session};
-use crate::session::{TextKey, Topic, Turn, asking, panes};
+use crate::session::{TextKey, Topic, Turn, asking};
 
 /// Returns the knobs that apply to the panel's pane, with their numbers in the table.
 pub fn rows(session: &Session) -> Vec<(usize, &'static Knob, Dial)> {
@@ -85,7 +85,7 @@ pub fn apply(session: &mut Session, request: PanelRequest) -> bool {
         PanelRequest::CloseList => session.list = None,
         PanelRequest::GoTo(share) => session.scrub_to(share),
         PanelRequest::AddPane(pane) => session.toggle_list(Topic::Beside { pane }),
-        PanelRequest::RemovePane(pane) => return panes::remove(session, pane),
+        PanelRequest::RemovePane(pane) => return session.remove_pane(pane),
         PanelRequest::RunAgain(pane) => session.run_again(pane),
         PanelRequest::Tool(tool) => session.panel.editor.tool = tool,
         PanelRequest::SetMeasure(measure, value) => session.panel.editor.set(measure, value),
@@ -118,11 +118,12 @@ fn turn_row(session: &mut Session, at: usize, row: usize, turn: Turn) {
 /// Makes the bodies of the scene that can be of a material of it, while the motion goes on.
 fn name_material(session: &mut Session, material: &Material) {
     let Material { name, about, .. } = material;
-    let said = match edit(
+    let done = edit(
         session,
         &Edit::NameMaterial(name),
         &format!("material {name}"),
-    ) {
+    );
+    let said = match done {
         Err(why) => why,
         Ok(()) => match session.runs.fit_steps() {
             None => format!("{name}: {about}."),

@@ -7,8 +7,7 @@ use a3_core::Network;
 use a3_scenes::Edit;
 
 use super::knobs::KNOBS;
-use super::parts;
-use super::tune::go_on;
+use super::parts::{self, go_on};
 use crate::session::{Change, EditChange, Passage, Recorded, Session, exchange};
 
 /// Undoes the last change, or with `redo` redoes the one undone last, and shows a message.

@@ -30,34 +30,22 @@ pub fn own(session: &Session) -> Option<&Network> {
 
 /// Creates the dial of a switch. `own` is the scene's own position.
 pub fn switch(on: bool, own: bool) -> Dial {
-    Dial {
-        value: f64::from(u8::from(on)),
-        own: f64::from(u8::from(own)),
-        scale: DialScale::Switch,
-        words: if on { "on" } else { "off" }.into(),
-    }
+    let [value, own] = [on, own].map(|on| f64::from(u8::from(on)));
+    Dial::new(value, own, DialScale::Switch, if on { "on" } else { "off" })
 }
 
 pub fn solver(session: &Session, at: usize) -> Option<Dial> {
     let run = &session.runs.panes.get(at)?.simulation;
-    let system = run.model().system();
-    let serves = |i: &usize| integrators::METHODS[*i].check(system).is_ok();
-    let index = |method| {
-        let of = |m: &a3_core::Method| std::ptr::eq(m, method);
-        integrators::METHODS.iter().position(of).unwrap_or(0) as f64
+    let (system, all) = (run.model().system(), integrators::METHODS);
+    let serves = (0..all.len()).filter(|i| all[*i].check(system).is_ok());
+    let scale = DialScale::Choice(serves.map(|i| i as f64).collect());
+    let index = |method: &a3_core::Method| {
+        let mut others = all.iter();
+        others.position(|m| std::ptr::eq(m, method)).unwrap_or(0) as f64
     };
-    let own = session.scenes.shown.source.solver_or(None);
-    Some(Dial {
-        value: index(run.method()),
-        own: index(own),
-        scale: DialScale::Choice(
-            (0..integrators::METHODS.len())
-                .filter(serves)
-                .map(|i| i as f64)
-                .collect(),
-        ),
-        words: run.method().title.into(),
-    })
+    let own = index(session.scenes.shown.source.solver_or(None));
+    let (value, words) = (index(run.method()), run.method().title);
+    Some(Dial::new(value, own, scale, words))
 }
 
 /// Returns the dial of the material of the bodies, by its index; past the last one for none.
@@ -69,57 +57,42 @@ pub fn material(session: &Session, _: usize) -> Option<Dial> {
         return None;
     }
     let now = scene.named_material().and_then(place);
-    let value = now.unwrap_or_else(|| {
+    if now.is_none() {
         all.push(MATERIALS.len());
-        MATERIALS.len()
-    }) as f64;
-    Some(Dial {
-        value,
-        own: value,
-        scale: DialScale::Choice(all.iter().map(|k| *k as f64).collect()),
-        words: now.map_or("own", |k| MATERIALS[k].name).into(),
-    })
+    }
+    let value = now.unwrap_or(MATERIALS.len()) as f64;
+    let scale = DialScale::Choice(all.iter().map(|k| *k as f64).collect());
+    let words = now.map_or("own", |k| MATERIALS[k].name);
+    Some(Dial::new(value, value, scale, words))
 }
 
 pub fn step(session: &Session, at: usize) -> Option<Dial> {
     let run = &session.runs.panes.get(at)?.simulation;
-    let (from, to, words) = match run.control() {
+    let (ends, words) = match run.control() {
         // The dial covers common steps, and more if the present step is beyond them.
         Control::Step(step) => (
-            step.min(1e-5),
-            step.max(1.0),
+            [step.min(1e-5), step.max(1.0)],
             format!("{} s", short(step, 3)),
         ),
         Control::Tolerance(tolerance) => {
             let range = bounds::of(run.control());
-            (*range.start(), *range.end(), format!("{tolerance:e}"))
+            ([*range.start(), *range.end()], format!("{tolerance:e}"))
         }
     };
-    Some(Dial {
-        value: run.control().value(),
-        own: session.tuning.defaults.control_of(run.method()).value(),
-        scale: DialScale::Log { from, to },
-        words,
-    })
+    let own = session.tuning.defaults.control_of(run.method()).value();
+    let value = run.control().value();
+    Some(Dial::new(value, own, DialScale::Log(ends), words))
 }
 
 /// Creates the dial of a factor on the scene's own value.
 fn factor(value: f64, scale: DialScale) -> Dial {
-    Dial {
-        value,
-        own: 1.0,
-        scale,
-        words: format!("× {value}"),
-    }
+    Dial::new(value, 1.0, scale, format!("× {value}"))
 }
 
 pub fn stiffness(session: &Session, _: usize) -> Option<Dial> {
     let own = own(session)?;
     (own.is_elastic() || own.fluid().is_some()).then_some(())?;
-    let scale = DialScale::Log {
-        from: 0.1,
-        to: 10.0,
-    };
+    let scale = DialScale::Log([0.1, 10.0]);
     Some(factor(session.tuning.stiffness, scale))
 }
 
@@ -127,21 +100,13 @@ pub fn damping(session: &Session, _: usize) -> Option<Dial> {
     let own = own(session)?;
     let is_viscous = own.fluid().is_some_and(|fluid| fluid.law().viscosity > 0.0);
     (own.is_damped() || is_viscous).then_some(())?;
-    let scale = DialScale::Linear {
-        from: 0.0,
-        to: 5.0,
-        step: 0.2,
-    };
+    let scale = DialScale::Linear([0.0, 5.0], 0.2);
     Some(factor(session.tuning.damping, scale))
 }
 
 pub fn gusts(session: &Session, _: usize) -> Option<Dial> {
     session.runs.first().scene().wind?;
-    let scale = DialScale::Linear {
-        from: 0.0,
-        to: 3.0,
-        step: 0.1,
-    };
+    let scale = DialScale::Linear([0.0, 3.0], 0.1);
     Some(factor(session.tuning.gusts, scale))
 }
 
@@ -151,16 +116,9 @@ pub fn drag(session: &Session, _: usize) -> Option<Dial> {
     let (own, value) = (own.drag().unwrap_or(0.0), now.drag().unwrap_or(0.0));
     // Up to a drag that damps motion with a time constant of 0.2 s, or four times the scene's own.
     let to = round_up((5.0 * mean).max(4.0 * own), FEW);
-    Some(Dial {
-        value,
-        own,
-        scale: DialScale::Linear {
-            from: 0.0,
-            to,
-            step: 0.02 * to,
-        },
-        words: format!("{} kg/s", short(value, 3)),
-    })
+    let scale = DialScale::Linear([0.0, to], 0.02 * to);
+    let words = format!("{} kg/s", short(value, 3));
+    Some(Dial::new(value, own, scale, words))
 }
 
 /// Returns the particles and limits of all bodies with a strain limit, or else the sheets without
@@ -185,32 +143,18 @@ pub fn strain_limit(session: &Session, _: usize) -> Option<Dial> {
     let (_, own) = strain_limits(own).into_iter().next()?;
     let now = network(session)?.strain_limits().first();
     let value = now.map_or(1.0, |(_, limit)| *limit);
-    Some(Dial {
-        value,
-        own: own.unwrap_or(1.0),
-        scale: DialScale::Linear {
-            from: 1.0,
-            to: 1.5,
-            step: 0.02,
-        },
-        words: now.map_or("off".into(), |_| format!("× {}", short(value, 4))),
-    })
+    let scale = DialScale::Linear([1.0, 1.5], 0.02);
+    let words = now.map_or("off".into(), |_| format!("× {}", short(value, 4)));
+    Some(Dial::new(value, own.unwrap_or(1.0), scale, words))
 }
 
 pub fn gravity(session: &Session, _: usize) -> Option<Dial> {
     let down = |network: &Network| network.gravity().map_or(0.0, |g| -g.y);
     let (own, value) = (down(own(session)?), down(network(session)?));
-    Some(Dial {
-        value,
-        own,
-        scale: DialScale::Linear {
-            from: own.min(0.0),
-            // The gravity of Jupiter.
-            to: own.max(25.0),
-            step: 0.5,
-        },
-        words: format!("{} m/s²", short(value, 3)),
-    })
+    // Up to the gravity of Jupiter.
+    let scale = DialScale::Linear([own.min(0.0), own.max(25.0)], 0.5);
+    let words = format!("{} m/s²", short(value, 3));
+    Some(Dial::new(value, own, scale, words))
 }
 
 /// Returns the indices and radii (m) of the spheres among the obstacles of a network.
@@ -233,31 +177,19 @@ pub fn floor(network: &Network) -> Option<(usize, &Obstacle)> {
 pub fn sphere(session: &Session, _: usize) -> Option<Dial> {
     let radius = |network: &Network| radii(network).next().map(|(_, radius)| radius);
     let (own, value) = (radius(own(session)?)?, radius(network(session)?)?);
-    Some(Dial {
-        value,
-        own,
-        scale: DialScale::Linear {
-            from: 0.1 * own,
-            to: 2.0 * own,
-            step: 0.05 * round_up(own, FEW),
-        },
-        words: format!("{} m", short(value, 3)),
-    })
+    let step = 0.05 * round_up(own, FEW);
+    let scale = DialScale::Linear([0.1 * own, 2.0 * own], step);
+    let words = format!("{} m", short(value, 3));
+    Some(Dial::new(value, own, scale, words))
 }
 
 pub fn springs_of(session: &Session, at: usize) -> Option<Dial> {
     let network = network(session)?;
     own(session)?.all_springs().next()?;
     let i = session.runs.panes.get(at)?.show.springs_of;
-    Some(Dial {
-        value: i.map_or(-1.0, |i| i as f64),
-        own: -1.0,
-        scale: DialScale::Whole {
-            from: -1.0,
-            to: (network.particles() - 1) as f64,
-        },
-        words: i.map_or("none".into(), |i| i.to_string()),
-    })
+    let scale = DialScale::Whole([-1.0, (network.particles() - 1) as f64]);
+    let words = i.map_or("none".into(), |i| i.to_string());
+    Some(Dial::new(i.map_or(-1.0, |i| i as f64), -1.0, scale, words))
 }
 
 /// Creates a dial that chooses one of the available items or none; `None` if no item is available.
@@ -275,12 +207,9 @@ fn one_of<T: Copy + PartialEq>(
     }
     values.push(none);
     let place = chosen.and_then(|chosen| all.iter().position(|one| *one == chosen));
-    Some(Dial {
-        value: place.map_or(none, |k| k as f64),
-        own: none,
-        scale: DialScale::Choice(values),
-        words: chosen.map_or("none", name).into(),
-    })
+    let value = place.map_or(none, |k| k as f64);
+    let words = chosen.map_or("none", name);
+    Some(Dial::new(value, none, DialScale::Choice(values), words))
 }
 
 pub fn colour(session: &Session, at: usize) -> Option<Dial> {
@@ -293,72 +222,44 @@ pub fn colour(session: &Session, at: usize) -> Option<Dial> {
 pub fn full_colour(session: &Session, at: usize) -> Option<Dial> {
     let colouring = &session.runs.panes.get(at)?.show.colouring;
     let (quantity, scale) = (colouring.quantity?, colouring.scale);
-    let fitting = if scale.fitting > 0.0 {
-        scale.fitting
-    } else {
-        1.0
-    };
+    let fitting = Some(scale.fitting).filter(|it| *it > 0.0).unwrap_or(1.0);
     let end = scale.fixed.unwrap_or(fitting);
-    let words = format!("{}{}", short(end, 3), quantity.unit());
-    Some(Dial {
-        value: end,
-        own: fitting,
-        scale: DialScale::Log {
-            from: 1e-3 * fitting,
-            to: 1e2 * fitting,
-        },
-        words: if scale.fixed.is_some() {
-            words
-        } else {
-            format!("auto, {words}")
-        },
-    })
+    let auto = scale.fixed.map_or("auto, ", |_| "");
+    let words = format!("{auto}{}{}", short(end, 3), quantity.unit());
+    let scale = DialScale::Log([1e-3 * fitting, 1e2 * fitting]);
+    Some(Dial::new(end, fitting, scale, words))
 }
 
 /// Frame rates (1/s) that can be chosen as the largest; 0 for that of the screen.
 const FRAME_LIMITS: [u32; 5] = [0, 60, 30, 15, 5];
 
 pub fn frame_limit(session: &Session, _: usize) -> Option<Dial> {
-    session.readings.in_window.then(|| {
-        let limit = session.panel.frame_limit;
-        let mut values: Vec<f64> = FRAME_LIMITS.map(f64::from).to_vec();
-        // Keep another value from the settings file.
-        if !FRAME_LIMITS.contains(&limit) {
-            values.push(limit.into());
-        }
-        Dial {
-            value: limit.into(),
-            own: 0.0,
-            scale: DialScale::Choice(values),
-            words: match limit {
-                0 => "no limit".into(),
-                limit => format!("at most {limit}/s"),
-            },
-        }
-    })
+    let limit = session.panel.frame_limit;
+    let mut values: Vec<f64> = FRAME_LIMITS.map(f64::from).to_vec();
+    // Keep another value from the settings file.
+    if !FRAME_LIMITS.contains(&limit) {
+        values.push(limit.into());
+    }
+    let words = match limit {
+        0 => "no limit".into(),
+        limit => format!("at most {limit}/s"),
+    };
+    let dial = || Dial::new(limit.into(), 0.0, DialScale::Choice(values), words);
+    session.readings.in_window.then(dial)
 }
 
 pub fn film(session: &Session, _: usize) -> Option<Dial> {
     let ending = Ending::ALL.iter().position(|e| *e == session.panel.film);
     let place = ending.filter(|_| !IS_PAGE)?;
-    Some(Dial {
-        value: place as f64,
-        own: 0.0,
-        scale: DialScale::Choice((0..Ending::ALL.len()).map(|k| k as f64).collect()),
-        words: session.panel.film.name().into(),
-    })
+    let scale = DialScale::Choice((0..Ending::ALL.len()).map(|k| k as f64).collect());
+    let words = session.panel.film.name();
+    Some(Dial::new(place as f64, 0.0, scale, words))
 }
 
-pub fn film_seconds(session: &Session) -> Dial {
-    Dial {
-        value: session.panel.film_seconds,
-        own: DEFAULT_FILM_SECONDS,
-        scale: DialScale::Whole {
-            from: 1.0,
-            to: SPAN,
-        },
-        words: format!("last {} s", session.panel.film_seconds),
-    }
+pub fn film_seconds(session: &Session, _: usize) -> Option<Dial> {
+    let seconds = session.panel.film_seconds;
+    let (scale, words) = (DialScale::Whole([1.0, SPAN]), format!("last {seconds} s"));
+    (!IS_PAGE).then(|| Dial::new(seconds, DEFAULT_FILM_SECONDS, scale, words))
 }
 
 pub fn arrows(session: &Session, at: usize) -> Option<Dial> {
@@ -367,24 +268,16 @@ pub fn arrows(session: &Session, at: usize) -> Option<Dial> {
     one_of(&Arrows::ALL, chosen, has, Arrows::name)
 }
 
-/// Returns the name of a style.
-fn style_name(style: Style) -> &'static str {
-    match style {
-        Style::Shaded => "surface",
-        Style::Wireframe => "wires",
-        Style::Springs => "springs",
-    }
-}
-
 pub fn style(session: &Session, at: usize) -> Option<Dial> {
     let pane = session.runs.panes.get(at)?;
     let styles = Show::styles(&pane.simulation);
     let place = styles.iter().position(|style| *style == pane.show.style);
+    let scale = DialScale::Choice((0..styles.len()).map(|k| k as f64).collect());
+    let words = match pane.show.style {
+        Style::Shaded => "surface",
+        Style::Wireframe => "wires",
+        Style::Springs => "springs",
+    };
     let drawn = pane.show.has_surface(&pane.simulation);
-    drawn.then(|| Dial {
-        value: place.unwrap_or(0) as f64,
-        own: 0.0,
-        scale: DialScale::Choice((0..styles.len()).map(|k| k as f64).collect()),
-        words: style_name(pane.show.style).into(),
-    })
+    drawn.then(|| Dial::new(place.unwrap_or(0) as f64, 0.0, scale, words))
 }

@@ -1,11 +1,11 @@
-//! Particles, rigid bodies, springs, rods and the whole scene, and their values in a state of a
-//! run.
+//! Particles, rigid bodies, springs, rods and the whole scene, the variables of them that can be
+//! plotted, and their values in a state of a run.
 
 use a3_core::elements::{Buckling, Cords};
 use a3_core::{Constraint, Element, Network, Simulation, Spring, Vector3};
 use a3_scenes::Splice;
 
-use super::variable::{ANGLE, Kind, Row, VALUES};
+use crate::session::rows;
 
 /// Something with values, by the numbers of its run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,11 +134,8 @@ impl Pick {
 
 /// Returns the values of particle i of a network, whose springs have some energy (J).
 fn moving(network: &Network, run: &Simulation, i: usize, of_springs: f64) -> [f64; VALUES] {
-    let (x, v, mass) = (
-        run.position(i),
-        velocity(network, run, i),
-        network.masses()[i],
-    );
+    let (x, v) = (run.position(i), velocity(network, run, i));
+    let mass = network.masses()[i];
     let gravity = network.gravity().unwrap_or_default();
     let mut values = [f64::NAN; VALUES];
     values[..3].copy_from_slice(x.as_slice());
@@ -291,3 +288,171 @@ fn alone(network: &Network, i: usize, j: usize) -> Option<(Network, f64)> {
 fn columns([a, b]: &[Vector3<f64>; 2]) -> [f64; 6] {
     [a.x, b.x, a.y, b.y, a.z, b.z]
 }
+
+/// Kind of what is plotted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    Particle,
+    Body,
+    Spring,
+    /// A rod or a rope.
+    Rod,
+    Scene,
+}
+
+impl Kind {
+    /// Returns the phase plane with which plots of this kind begin.
+    pub fn plane(self) -> [Variable; 2] {
+        match self {
+            Self::Particle | Self::Body => [Variable::X, Variable::VelocityX],
+            Self::Spring => [Variable::Length, Variable::Force],
+            Self::Rod => [Variable::Angle, Variable::SpinZ],
+            Self::Scene => [Variable::Kinetic, Variable::Potential],
+        }
+    }
+}
+
+/// A variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variable {
+    X,
+    Y,
+    Z,
+    VelocityX,
+    VelocityY,
+    VelocityZ,
+    Speed,
+    Kinetic,
+    Elastic,
+    Contact,
+    Gravitational,
+    Potential,
+    Energy,
+    Angle,
+    Tilt,
+    SpinX,
+    SpinY,
+    SpinZ,
+    Length,
+    Strain,
+    Force,
+}
+
+impl Variable {
+    /// All variables in the order of their buttons, each with the name on the button, the name on
+    /// an axis, the unit, and the places of the values of a row that add up to it.
+    const TABLE: [(Self, [&'static str; 3], &'static [usize]); 21] = [
+        (Self::X, ["x", "x", "m"], &[0]),
+        (Self::Y, ["y", "y", "m"], &[1]),
+        (Self::Z, ["z", "z", "m"], &[2]),
+        (Self::VelocityX, ["vx", "vx", "m/s"], &[3]),
+        (Self::VelocityY, ["vy", "vy", "m/s"], &[4]),
+        (Self::VelocityZ, ["vz", "vz", "m/s"], &[5]),
+        (Self::Speed, ["speed", "speed", "m/s"], &[]),
+        (Self::Kinetic, ["kinetic", "kinetic energy", "J"], &[6]),
+        (Self::Elastic, ["elastic", "elastic energy", "J"], &[7]),
+        (Self::Contact, ["contact", "energy of contact", "J"], &[9]),
+        (
+            Self::Gravitational,
+            ["gravity", "gravitational energy", "J"],
+            &[8],
+        ),
+        (
+            Self::Potential,
+            ["potential", "potential energy", "J"],
+            &[7, 8, 9],
+        ),
+        (Self::Energy, ["energy", "energy", "J"], &[6, 7, 8, 9]),
+        (Self::Angle, ["angle", "angle", "rad"], &[ANGLE]),
+        (Self::Tilt, ["tilt", "angle to the vertical", "rad"], &[14]),
+        (Self::SpinX, ["ωx", "angular velocity x", "rad/s"], &[10]),
+        (Self::SpinY, ["ωy", "angular velocity y", "rad/s"], &[11]),
+        (Self::SpinZ, ["ωz", "angular velocity z", "rad/s"], &[12]),
+        (Self::Length, ["length", "length", "m"], &[0]),
+        (Self::Strain, ["strain", "strain", ""], &[1]),
+        (Self::Force, ["force", "force", "N"], &[2]),
+    ];
+
+    /// Returns all variables, in the order of their buttons.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::TABLE.into_iter().map(|row| row.0)
+    }
+
+    /// Returns the short name, the name on an axis, and the unit, which is empty for a ratio.
+    pub fn words(self) -> [&'static str; 3] {
+        Self::TABLE[self as usize].1
+    }
+
+    /// Returns the short name.
+    pub fn name(self) -> &'static str {
+        self.words()[0]
+    }
+
+    /// Returns the unit; empty for a ratio.
+    pub fn unit(self) -> &'static str {
+        self.words()[2]
+    }
+
+    /// Returns whether things of a kind have the variable.
+    pub fn is_of(self, kind: Kind) -> bool {
+        match self {
+            Self::X | Self::Y | Self::Z | Self::Speed => {
+                kind == Kind::Particle || kind == Kind::Body
+            }
+            Self::VelocityX | Self::VelocityY | Self::VelocityZ => Self::X.is_of(kind),
+            Self::Kinetic | Self::Potential | Self::Energy => {
+                Self::X.is_of(kind) || kind == Kind::Scene
+            }
+            Self::Elastic => matches!(kind, Kind::Particle | Kind::Spring | Kind::Scene),
+            Self::Gravitational => kind == Kind::Particle || kind == Kind::Scene,
+            Self::Contact => kind == Kind::Scene,
+            Self::Angle | Self::Tilt | Self::SpinZ => {
+                matches!(kind, Kind::Body | Kind::Spring | Kind::Rod)
+            }
+            Self::SpinX | Self::SpinY => kind == Kind::Body,
+            Self::Length => kind == Kind::Spring || kind == Kind::Rod,
+            Self::Strain | Self::Force => kind == Kind::Spring,
+        }
+    }
+
+    /// Returns the value in a row of something that has the variable.
+    pub fn of(self, row: &Row) -> f64 {
+        if self == Self::Speed {
+            let [x, y, z] = [3, 4, 5].map(|k| row.values[k]);
+            return x.hypot(y).hypot(z);
+        }
+        let values = Self::TABLE[self as usize].2.iter();
+        let values = values.map(|k| row.values[*k]);
+        values.reduce(|sum, value| sum + value).unwrap_or(f64::NAN)
+    }
+
+    /// Returns whether this is a coordinate of a place, or an angle.
+    pub fn is_coordinate(self) -> bool {
+        matches!(self, Self::X | Self::Y | Self::Z | Self::Angle)
+    }
+
+    /// Returns the velocity of a coordinate or of an angle; that of x for any other variable.
+    pub fn velocity(self) -> Self {
+        match self {
+            Self::Angle => Self::SpinZ,
+            Self::Y => Self::VelocityY,
+            Self::Z => Self::VelocityZ,
+            _ => Self::VelocityX,
+        }
+    }
+}
+
+/// Number of values of a row.
+pub const VALUES: usize = 15;
+/// Place of the angle among them.
+pub const ANGLE: usize = 13;
+
+/// Values of a pick at one time. Of a spring, or a rod without the last two: length (m), strain and
+/// force (N), above 0 when it pulls. Otherwise: position (m). Then of all: velocity (m/s), kinetic,
+/// elastic, gravitational and contact energy (J), angular velocity (rad/s), and two angles (rad). A
+/// value that is not known is NaN.
+///
+/// Seen from the front, along z, the first angle is that of a spring or a rod from straight down,
+/// or of a body's own x axis from the right, both anticlockwise. The second one is that in space of
+/// the spring or rod to straight down, or of the body's own y axis to straight up.
+pub type Row = rows::Row<[f64; VALUES]>;

@@ -3,9 +3,8 @@
 use a3_core::{Simulation, Vector3};
 use a3_scenes::Splice;
 
-use super::pick::Pick;
-use super::section::Trigger;
-use super::variable::Variable;
+use super::pick::{Pick, Variable};
+use super::series::Trigger;
 
 /// Simulated times that plots can show (s).
 pub const SPANS: [f64; 3] = [5.0, 20.0, 60.0];
@@ -64,8 +63,8 @@ impl Quantity {
 
     /// Returns the name with the unit, as on an axis.
     pub fn label(self) -> String {
-        let (name, of) = (self.variable.long_name(), self.owner());
-        match self.variable.unit() {
+        let ([_, name, unit], of) = (self.variable.words(), self.owner());
+        match unit {
             "" => format!("{name}{of}"),
             unit => format!("{name}{of} ({unit})"),
         }

@@ -29,8 +29,11 @@ impl Screen {
     fn frame(&mut self, session: &Session, events: Vec<Event>) -> Option<Action> {
         let pane = session.shows(RunAction::Panel).then_some(PANE);
         let taken = pane.as_ref().map_or([0.0; 2], |pane| pane.taken(self.size));
-        self.window
-            .frame(taken, events, |ctx| pane.as_ref()?.show(ctx, session))
+        self.window.frame(taken, events, |ctx| {
+            if let Some(pane) = &pane {
+                pane.show(ctx, session);
+            }
+        })
     }
 
     /// Returns all text, with its rectangle and the visible part of the screen.

@@ -152,7 +152,7 @@ fn another_scene_is_not_tuned() {
 fn the_limit_follows_the_stiffness() {
     let mut session = opened(&["r", "0.005", "--scene", "mit", "--paused"]);
     session.read_state();
-    let limit = |session: &Session| session.runs.panes[0].limit.limit().unwrap().step;
+    let limit = |session: &Session| session.runs.panes[0].limit.limit.unwrap().step;
     let before = limit(&session);
     let k = KNOBS.iter().position(|k| k.name == "stiffness").unwrap();
     apply(&mut session, PanelRequest::Turn(k, Turn::To(4.0)), 0);

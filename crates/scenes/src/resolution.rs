@@ -1,10 +1,10 @@
 //! The same scene on finer or coarser grids and lattices, with the same mass, stiffness and
 //! damping of its materials.
 
+use std::collections::HashMap;
+
 use a3_core::Vector3;
 
-use super::cells::{divided, finer, gcd};
-use super::places::{Lattice, Places};
 use crate::assemble::{damping_time, fluid_points, max_thickness, restrip};
 use crate::description::{Cloth, Description, Fluid, Jelly, Pin};
 
@@ -45,9 +45,7 @@ pub fn regridded(scene: &Description, factor: f64, particles: usize) -> Result<R
         let Some(grid) = own.grid else {
             return Err("a solid from a file has no grid".into());
         };
-        if mesh_is_before {
-            return Err("a solid keeps its grid if the scene has meshes".into());
-        }
+        refuse!(if mesh_is_before => "a solid keeps its grid if the scene has meshes");
         let finer = finer(grid, factor);
         other.grid = Some(finer);
         places.add_lattice(grid, finer);
@@ -60,9 +58,7 @@ pub fn regridded(scene: &Description, factor: f64, particles: usize) -> Result<R
     }
     keep_forces_per_mass(&mut other, scene, &places)?;
     other.trail = None;
-    if places.count == particles {
-        return Err("its cells cannot be larger and keep their shape".into());
-    }
+    refuse!(if places.count == particles => "its cells cannot be larger and keep their shape");
     Ok(Regridded {
         description: other,
         places: places.of,
@@ -76,22 +72,15 @@ fn gridded(scene: &Description) -> usize {
 
 /// Checks that a body has a grid, and that nothing in the scene refers to single particles.
 fn check_grids(scene: &Description) -> Result<(), String> {
-    if gridded(scene) == 0 {
-        return Err("no body has a grid that could be finer".into());
-    }
-    if !scene.fluid.is_empty() && !scene.body.is_empty() {
-        return Err("rigid bodies carry particles of the fluid's lattice".into());
-    }
+    refuse!(if gridded(scene) == 0 => "no body has a grid that could be finer");
+    refuse!(if !scene.fluid.is_empty() && !scene.body.is_empty() =>
+        "rigid bodies carry particles of the fluid's lattice");
     for cloth in &scene.cloth {
-        if cloth.spacing.is_some() || cloth.mass.is_some() {
-            return Err("a cloth gives the mass and the distance of its particles, \
-                 not its width and density"
-                .into());
-        }
+        refuse!(if cloth.spacing.is_some() || cloth.mass.is_some() =>
+            "a cloth gives the mass and the distance of its particles, not its width and density");
     }
-    if scene.jelly.iter().any(|jelly| jelly.mass.is_some()) {
-        return Err("a jelly gives the mass of its particles, not its density".into());
-    }
+    refuse!(if scene.jelly.iter().any(|jelly| jelly.mass.is_some()) =>
+        "a jelly gives the mass of its particles, not its density");
     let pins = scene.cloth.iter().map(|it| &it.pin);
     let pins = pins.chain(scene.jelly.iter().map(|it| &it.pin));
     let mut pins = pins.chain(scene.solid.iter().map(|it| &it.pin)).flatten();
@@ -103,12 +92,10 @@ fn check_grids(scene: &Description) -> Result<(), String> {
         (!scene.torn.is_empty(), "torn springs"),
         (scene.state.is_some(), "a state"),
     ];
-    match numbers.iter().find(|(is_there, _)| *is_there) {
-        Some((_, what)) => Err(format!(
-            "the scene has {what} that name particles by their numbers"
-        )),
-        None => Ok(()),
+    for (is_there, what) in numbers {
+        refuse!(if is_there => "the scene has {what} that name particles by their numbers");
     }
+    Ok(())
 }
 
 /// Keeps the force per mass of drag and wind that are given for each particle.
@@ -122,9 +109,8 @@ fn keep_forces_per_mass(
     let wind = scene.wind.as_mut();
     let pushed = wind.filter(|wind| wind.force.is_some() || wind.force_per_mass.is_some());
     let uneven = places.kept > 0 || gridded(own) > 1;
-    if uneven && (by_particle || pushed.is_some()) {
-        return Err("drag or wind is the same for each particle of several bodies".into());
-    }
+    refuse!(if uneven && (by_particle || pushed.is_some()) =>
+        "drag or wind is the same for each particle of several bodies");
     // The mean mass falls as the number of particles rises.
     if let Some(drag) = &mut scene.drag {
         *drag *= was / is;
@@ -182,14 +168,13 @@ type Points = Vec<Vector3<f64>>;
 ///
 /// # Errors
 /// A fluid makes no sense, or would have too many particles.
-pub fn regrid_fluids(
+fn regrid_fluids(
     own: &[Fluid],
     other: &mut [Fluid],
     factor: f64,
 ) -> Result<Vec<(Points, Lattice)>, String> {
-    if own.iter().any(|fluid| fluid.inflow.is_some()) {
-        return Err("a fluid that flows in has no other lattice".into());
-    }
+    refuse!(if own.iter().any(|fluid| fluid.inflow.is_some()) =>
+        "a fluid that flows in has no other lattice");
     // All fluids of a scene have the same spacing, so that all edges are multiples of the other.
     let edges = own.iter().flat_map(|fluid| {
         let tank = fluid.tank.iter().flat_map(|tank| tank.size);
@@ -205,9 +190,8 @@ pub fn regrid_fluids(
         let own = points(own)?;
         let dimensions = other.dimensions;
         let count = own.iter().map(Vec::len).sum::<usize>() as f64;
-        if count * ratio.powi(-i32::from(dimensions)) > MAX_PARTICLES {
-            return Err("a finer fluid has too many particles".into());
-        }
+        refuse!(if count * ratio.powi(-i32::from(dimensions)) > MAX_PARTICLES =>
+            "a finer fluid has too many particles");
         for (own, points) in own.into_iter().zip(points(other)?) {
             let lattice = Lattice::new(&points, other.spacing, dimensions.into());
             lattices.push((own, lattice));
@@ -216,17 +200,200 @@ pub fn regrid_fluids(
     Ok(lattices)
 }
 
+/// Returns a grid with cells of the same shape, about `factor` times shorter. A grid is given by
+/// its numbers of particles.
+fn finer<const N: usize>(grid: [usize; N], factor: f64) -> [usize; N] {
+    let cells = grid.map(|n| n.max(2) - 1);
+    let parts = cells.into_iter().fold(0, gcd);
+    cells.map(|n| n / parts * divided(parts, factor) + 1)
+}
+
+/// Returns the number of cells about `factor` times shorter in the place of `cells`, at least 1.
+fn divided(cells: usize, factor: f64) -> usize {
+    ((cells as f64 * factor).round() as usize).max(1)
+}
+
+/// Returns the greatest common divisor.
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+/// Places of the particles of one grid on another, body by body.
+#[derive(Default)]
+struct Places {
+    /// Place of each particle, as a weighted mean of particles of the other grid: their numbers and
+    /// weights.
+    pub of: Vec<Vec<(usize, f64)>>,
+    /// Number of particles of the scene on the other grid.
+    pub count: usize,
+    /// Number of particles that belong to no grid.
+    pub kept: usize,
+}
+
+impl Places {
+    /// Adds a body with its numbers of particles along each axis, on its own grid and on the other.
+    /// The index along the last axis varies fastest.
+    pub fn add(&mut self, own: &[usize], other: &[usize]) {
+        let first = self.count;
+        let total: usize = own.iter().product();
+        for number in 0..total {
+            // The place along each axis: the index of the particle before it, and the distance from
+            // there in cells.
+            let mut rest = number;
+            let along = own.iter().zip(other).rev().map(|(&n, &m)| {
+                let i = rest % n;
+                rest /= n;
+                let at = i as f64 * (m - 1) as f64 / (n.max(2) - 1) as f64;
+                let before = (at.floor() as usize).min(m - 2);
+                (before, at - before as f64, m)
+            });
+            let mut along: Vec<(usize, f64, usize)> = along.collect();
+            along.reverse();
+            let mut corners = vec![(0, 1.0)];
+            for (before, share, m) in along {
+                let both = corners.iter().flat_map(|&(at, weight)| {
+                    let at = at * m + before;
+                    [(at, weight * (1.0 - share)), (at + 1, weight * share)]
+                });
+                corners = both.filter(|(_, weight)| *weight > 1e-12).collect();
+            }
+            let corners = corners.into_iter().map(|(at, w)| (first + at, w));
+            self.of.push(corners.collect());
+        }
+        self.count += other.iter().product::<usize>();
+    }
+
+    /// Adds a lattice, in which the index along x varies fastest.
+    pub fn add_lattice(&mut self, [x, y, z]: [usize; 3], [i, j, k]: [usize; 3]) {
+        self.add(&[z, y, x], &[k, j, i]);
+    }
+
+    /// Adds the other particles of the scene, up to this number in all, which belong to no grid.
+    pub fn add_others(&mut self, particles: usize) {
+        self.kept = particles.saturating_sub(self.of.len());
+        for _ in 0..self.kept {
+            self.of.push(vec![(self.count, 1.0)]);
+            self.count += 1;
+        }
+    }
+
+    /// Adds particles of a fluid or of the walls of a tank: their positions (m) on their own
+    /// lattice, and those of all particles on the other. Each is interpolated in the nearest cell
+    /// that has a particle at each corner, and extrapolated from it where that does not enclose it.
+    ///
+    /// # Errors
+    /// The other lattice has no such cell near a particle.
+    pub fn add_points(&mut self, own: &[Vector3<f64>], other: &Lattice) -> Result<(), String> {
+        for place in own {
+            let corners = other.corners(place);
+            let corners = corners.ok_or("a fluid has too few particles on another lattice")?;
+            let corners = corners.into_iter().map(|(at, w)| (self.count + at, w));
+            self.of.push(corners.collect());
+        }
+        self.count += other.numbers.len();
+        Ok(())
+    }
+}
+
+/// Particles on points of a cubic lattice, or of a square one across z.
+struct Lattice {
+    origin: Vector3<f64>,
+    spacing: f64,
+    /// Number of axes.
+    dimensions: usize,
+    /// Number of the particle on each point that has one.
+    numbers: HashMap<[i64; 3], usize>,
+}
+
+/// Largest distance of a cell from a particle that is interpolated in it (cells).
+const MAX_DISTANCE: i64 = 5;
+
+impl Lattice {
+    /// Creates the lattice of particles at these positions (m).
+    pub fn new(points: &[Vector3<f64>], spacing: f64, dimensions: usize) -> Self {
+        let origin = points.first().copied().unwrap_or_default();
+        let index = |place: &Vector3<f64>| {
+            let cells = (place - origin) / spacing;
+            [0, 1, 2].map(|axis| cells[axis].round() as i64)
+        };
+        let numbers = points.iter().enumerate().map(|(i, p)| (index(p), i));
+        Self {
+            origin,
+            spacing,
+            dimensions,
+            numbers: numbers.collect(),
+        }
+    }
+
+    /// Returns the particles at the corners of the nearest complete cell, with their weights at a
+    /// place (m).
+    fn corners(&self, place: &Vector3<f64>) -> Option<Vec<(usize, f64)>> {
+        let at = (place - self.origin) / self.spacing;
+        // Rounding must not move a place across a point of the lattice.
+        let first = [0, 1, 2].map(|axis| (at[axis] + 1e-9).floor() as i64);
+        let nearest = |distance: i64| {
+            let offsets = (-distance..=distance).flat_map(move |z| {
+                (-distance..=distance)
+                    .flat_map(move |y| (-distance..=distance).map(move |x| [x, y, z]))
+            });
+            let ring = offsets.filter(|offset| {
+                offset.iter().any(|k| k.abs() == distance)
+                    && offset[self.dimensions..].iter().all(|k| *k == 0)
+            });
+            let cells = ring.map(|offset| [0, 1, 2].map(|axis| first[axis] + offset[axis]));
+            let complete = cells.filter_map(|cell| Some((self.weights(cell, &at)?, cell)));
+            complete.min_by(|(_, a), (_, b)| {
+                let far = |cell: &[i64; 3]| {
+                    let axes = 0..self.dimensions;
+                    axes.map(|k| (cell[k] as f64 + 0.5 - at[k]).powi(2))
+                        .sum::<f64>()
+                };
+                far(a).total_cmp(&far(b))
+            })
+        };
+        (0..=MAX_DISTANCE).find_map(nearest).map(|found| found.0)
+    }
+
+    /// Returns the particles at the corners of a cell, with their weights at a place (cells).
+    /// `None` if one of them is missing.
+    fn weights(&self, cell: [i64; 3], at: &Vector3<f64>) -> Option<Vec<(usize, f64)>> {
+        let corners = (0..1_usize << self.dimensions).map(|corner| {
+            let (mut point, mut weight) = (cell, 1.0);
+            for axis in 0..self.dimensions {
+                let share = at[axis] - cell[axis] as f64;
+                let is_far = corner >> axis & 1 == 1;
+                point[axis] += i64::from(is_far);
+                weight *= if is_far { share } else { 1.0 - share };
+            }
+            Some((*self.numbers.get(&point)?, weight))
+        });
+        corners.collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use a3_core::Mechanics;
+    use a3_core::{Mechanics, Scene};
 
     use super::*;
 
     const CLOTH: &str = "[[cloth]]\ngrid = [11, 16]\nwidth = 1.5\ndensity = 0.2\nstiffness = [100, 50, 10]\ndamping_ratio = 0.05\n";
 
-    fn build(description: &Description) -> a3_core::Scene {
+    fn build(description: &Description) -> Scene {
         let setup = description.build(None, &mut |_| Err(String::new()));
         setup.unwrap().scene
+    }
+
+    /// Asserts that the particles are where they were at the start.
+    fn assert_same_places(own: &Scene, other: &Scene, places: &[Vec<(usize, f64)>]) {
+        let [n, m] = [own, other].map(|scene| scene.model.particles());
+        for (i, axis) in (0..n).flat_map(|i| [0, 1, 2].map(|axis| (i, axis))) {
+            let there = places[i]
+                .iter()
+                .map(|(k, weight)| weight * other.state[axis * m + k]);
+            let (here, there) = (own.state[axis * n + i], there.sum::<f64>());
+            assert!((here - there).abs() < 1e-12, "{i} {axis}");
+        }
     }
 
     #[test]
@@ -237,27 +404,14 @@ mod tests {
             let (a, b) = (build(&own), build(&other.description));
             let cloth = &other.description.cloth[0];
             assert_eq!(cloth.grid, grid);
-            let mass = |scene: &a3_core::Scene| {
-                scene.model.network().unwrap().masses().iter().sum::<f64>()
-            };
+            let mass = |scene: &Scene| scene.model.network().unwrap().masses().iter().sum::<f64>();
             assert!((mass(&a) - mass(&b)).abs() < 1e-12);
             // Drag on the whole cloth.
-            let drag = |scene: &a3_core::Scene, description: &Description| {
+            let drag = |scene: &Scene, description: &Description| {
                 description.drag.unwrap() * scene.model.particles() as f64
             };
             assert!((drag(&a, &own) / drag(&b, &other.description) - 1.0).abs() < 1e-12);
-            // The places of the particles are where they were at the start.
-            let n = b.model.particles();
-            for (i, corners) in other.places.iter().enumerate() {
-                for axis in 0..3 {
-                    let there: f64 = corners
-                        .iter()
-                        .map(|(k, weight)| weight * b.state[axis * n + k])
-                        .sum();
-                    let here = a.state[axis * 176 + i];
-                    assert!((here - there).abs() < 1e-12, "{i} {axis}");
-                }
-            }
+            assert_same_places(&a, &b, &other.places);
         }
     }
 
@@ -278,7 +432,7 @@ mod tests {
                 let b = build(&other.description);
                 let m = b.model.particles();
                 assert!((factor > 1.0) == (m > n), "{n} {m}");
-                let free = |scene: &a3_core::Scene| -> f64 {
+                let free = |scene: &Scene| -> f64 {
                     let network = scene.model.network().unwrap();
                     let masses = network.masses().iter().zip(network.inverse_masses());
                     masses.filter(|(_, w)| **w > 0.0).map(|(m, _)| m).sum()
@@ -286,14 +440,7 @@ mod tests {
                 if own.fluid[0].shape == crate::description::FluidShape::Box {
                     assert!((free(&a) / free(&b) - 1.0).abs() < 1e-12);
                 }
-                for (i, corners) in other.places.iter().enumerate() {
-                    for axis in 0..3 {
-                        let there = corners.iter().map(|(k, w)| w * b.state[axis * m + k]);
-                        let there: f64 = there.sum();
-                        let here = a.state[axis * n + i];
-                        assert!((here - there).abs() < 1e-12, "{text} {factor} {i} {axis}");
-                    }
-                }
+                assert_same_places(&a, &b, &other.places);
             }
         }
     }
@@ -301,11 +448,12 @@ mod tests {
     #[test]
     fn numbers_of_particles_keep_the_grid() {
         for more in ["torn = [[0, 1]]\n", "[[pin]]\nparticles = [0]\n"] {
-            let text = if more.starts_with('[') {
-                format!("{CLOTH}{more}")
+            let [first, last] = if more.starts_with('[') {
+                [CLOTH, more]
             } else {
-                format!("{more}{CLOTH}")
+                [more, CLOTH]
             };
+            let text = format!("{first}{last}");
             let scene = Description::parse(&text).unwrap();
             assert!(regridded(&scene, 2.0, 176).is_err(), "{more}");
         }
