@@ -10,6 +10,10 @@ use super::closest::{Nearest, PairKind, Separation, closest};
 use super::parts::split;
 use crate::error::{Error, finite};
 
+/// Distance from a surface, over its greatest distance from the origin, up to which a point counts
+/// as on it.
+const ON_SURFACE_SHARE: f64 = 1e-10;
+
 /// Closed surfaces of triangles, each of which bounds a solid. Solids may overlap: a point in any
 /// of them is inside.
 #[derive(Clone, Debug)]
@@ -183,8 +187,7 @@ impl ClosedMesh {
 
     /// Returns whether a point d is inside a solid.
     fn is_inside(&self, solid: &Tree, d: Vector3<f64>) -> bool {
-        self.offset_from(solid, d)
-            .is_some_and(|(offset, normal)| normal.dot(&offset) < 0.0)
+        self.offset_inside(solid, d).is_some()
     }
 
     /// Returns the points (m).
@@ -232,13 +235,13 @@ impl ClosedMesh {
     fn deepest(&self, d: Vector3<f64>, but: &[u32]) -> Option<(u32, Vector3<f64>, Vector3<f64>)> {
         let mut deepest: Option<(u32, Vector3<f64>, Vector3<f64>)> = None;
         let mut check = |k: u32, solid: &Tree| {
-            let Some((offset, normal)) = self.offset_from(solid, d) else {
+            let Some((offset, normal)) = self.offset_inside(solid, d) else {
                 return;
             };
             let is_deeper = |(_, other, _): &(u32, Vector3<f64>, Vector3<f64>)| {
                 offset.norm_squared() > other.norm_squared()
             };
-            if normal.dot(&offset) < 0.0 && deepest.as_ref().is_none_or(is_deeper) {
+            if deepest.as_ref().is_none_or(is_deeper) {
                 deepest = Some((k, offset, normal));
             }
         };
@@ -261,7 +264,9 @@ impl ClosedMesh {
         let (offset, normal) = self.offset(d).unwrap_or_default();
         let (side, outwards) = (normal.dot(&offset), normal.try_normalize(0.0));
         let sign = if side < 0.0 { -1.0 } else { 1.0 };
-        let away = offset.try_normalize(0.0).map(|away| away * sign);
+        // On the surface, the direction of the offset is a rounding error.
+        let none = ON_SURFACE_SHARE * self.reach;
+        let away = offset.try_normalize(none).map(|away| away * sign);
         Separation {
             distance: sign * offset.norm(),
             normal: away.or(outwards).unwrap_or_else(Vector3::y),
@@ -284,6 +289,13 @@ impl ClosedMesh {
             Some((_, offset, normal)) => Some((offset, normal)),
             None => self.offset_from(&self.whole, d),
         }
+    }
+
+    /// Returns the vector from the nearest point to a point d inside a solid, and the normal there.
+    fn offset_inside(&self, solid: &Tree, d: Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        let bounds = solid.boxes.bounds()?;
+        let found = (bounds.squared_distance(&d) == 0.0).then(|| self.offset_from(solid, d));
+        found?.filter(|(offset, normal)| normal.dot(offset) < 0.0)
     }
 
     /// Returns the vector from the nearest point to d, and the normal there, for the triangles in a
