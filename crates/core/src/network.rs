@@ -21,12 +21,12 @@ mod tearing;
 pub(crate) use attraction::{attract, let_go, mass_behind};
 pub use crossings::untangle;
 pub use elements::Element;
-pub(crate) use evaluation::{add_wind, energy_of_errors, has_motors, is_conservative};
+pub(crate) use evaluation::{add_wind, energy_of_errors, has_motors, is_conservative, is_loose};
 pub(crate) use holding::is_nearly_singular;
-pub(crate) use holding::{contradiction, has_joints, project, project_velocities};
+pub(crate) use holding::{contradiction, project, project_velocities};
 pub(crate) use jump::{Jump, Least, fit, tighten};
 pub(crate) use jump::{
-    has_ropes, least_tension, open_ends, ropes_of, set_taut, settle, slack, taut,
+    has_ropes, is_held, least_tension, open_ends, pass_on, ropes_of, set_taut, settle, slack, taut,
 };
 pub(crate) use outflow::{drained, entered, go_back, outflows, set_drained};
 pub use parts::Network;

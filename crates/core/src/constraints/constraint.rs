@@ -164,15 +164,23 @@ impl Constraint {
     pub(super) fn is_passed(&self, [value, rate]: [f64; 2], what: Projected) -> bool {
         let (Self::Stop(Stop {
             joint: Joint { length, .. },
+            restitution,
             ..
         })
-        | Self::Rope { length, .. }) = self
+        | Self::Rope {
+            length,
+            restitution,
+            ..
+        }) = self
         else {
             return false;
         };
         match what {
             Projected::Places => value > 0.0,
-            Projected::Velocities => value > -AT_END_SHARE * length && rate > 0.0,
+            // An elastic one rebounds where it is passed.
+            Projected::Velocities => {
+                *restitution == 0.0 && value > -AT_END_SHARE * length && rate > 0.0
+            }
         }
     }
 

@@ -29,6 +29,6 @@ pub(crate) use joints::{
     taut,
 };
 pub(crate) use joints::{joints, multipliers, nearest, project};
-pub(crate) use jump::{Struck, jump};
+pub(crate) use jump::{Pushed, Struck, jump};
 pub(crate) use set::{Constraints, Moved};
 pub(crate) use solve::Turning;

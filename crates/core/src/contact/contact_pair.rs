@@ -15,6 +15,9 @@ use super::surface::Surface;
 use crate::error::Vertex;
 use crate::geometry::weighted;
 
+/// Mobility that constraints leave, over that without them, below which it is a rounding error.
+const LEAST_MOBILITY: f64 = 1e-12;
+
 /// Contact of a pair: the weights of its closest points, the normal from the second primitive to
 /// the first, and the sum of the weighted inverse masses (1/kg).
 pub(super) struct ContactPair {
@@ -26,16 +29,17 @@ pub(super) struct ContactPair {
     /// Displacement (m) by which the primitives should separate in the step.
     pub wanted: f64,
     /// In a box, so that the contacts of cloth, which have none, are small.
-    rigid: Option<Box<RigidContact>>,
+    directed: Option<Box<Directed>>,
 }
 
-/// Contact with a rigid body on at least one side, whose mobility depends on the direction.
-struct RigidContact {
+/// Mobility of a contact that depends on the direction: with a rigid body on at least one side, or
+/// with constraints that pass impulses on.
+struct Directed {
     arms: [Option<Arm>; 2],
     /// Change of the relative velocity of the closest points by an impulse (1/kg).
     mobility: Matrix3<f64>,
     rolling: Option<Rolling>,
-    /// Changes by impulses in all directions that matter, if joints hold a body.
+    /// Changes by impulses in all directions that matter, if constraints pass them on.
     responses: Vec<Response>,
 }
 
@@ -84,7 +88,7 @@ impl ContactPair {
             normal,
             inverse_mass: terms.sum(),
             wanted: 0.0,
-            rigid: None,
+            directed: None,
         };
         if arms.iter().any(Option::is_some) {
             let mut mobility = Matrix3::identity() * contact.inverse_mass;
@@ -92,7 +96,7 @@ impl ContactPair {
                 mobility += arm.mobility();
             }
             contact.inverse_mass = normal.dot(&(mobility * normal));
-            contact.rigid = Some(Box::new(RigidContact {
+            contact.directed = Some(Box::new(Directed {
                 arms: *arms,
                 mobility,
                 rolling: None,
@@ -102,12 +106,25 @@ impl ContactPair {
         contact
     }
 
-    /// Lets joints pass impulses on, if they hold a body that is struck.
-    pub fn join(&mut self, joined: Joined, is_smooth: bool, motion: &Motion) {
-        let solids = &motion.solids;
-        let Some(rigid) = &self.rigid else { return };
-        let mut arms = rigid.arms.iter().flatten();
-        if !arms.any(|arm| joined.joints.hold(solids[arm.solid].center)) {
+    /// Lets constraints pass impulses on, if they hold something that is struck: particles with
+    /// these inverse masses (1/kg), or bodies.
+    pub fn join(
+        &mut self,
+        joined: Joined,
+        is_smooth: bool,
+        inverse_masses: &[f64],
+        solids: &[Solid],
+    ) {
+        let holds = |i: usize| joined.joints.hold(i);
+        let pushed = self.points.iter().zip(self.weights);
+        let pushed = pushed.map(|(i, weight)| {
+            let i = *i as usize;
+            (i, weight * inverse_masses[i])
+        });
+        let pushed = pushed.filter(|(_, share)| *share != 0.0);
+        let is_held = self.arms().any(|arm| holds(solids[arm.solid].center))
+            || pushed.clone().any(|(i, _)| holds(i));
+        if !is_held {
             return;
         }
         let across = self.normal.cross(&Vector3::ith(self.normal.iamin(), 1.0));
@@ -116,46 +133,46 @@ impl ContactPair {
         if !is_smooth {
             all.extend([across, self.normal.cross(&across)]);
         }
-        let pushed = self.points.iter().zip(self.weights);
-        let pushed = pushed.map(|(i, weight)| {
-            let i = *i as usize;
-            (i, weight * motion.inverse_masses[i])
-        });
         let mut mobility = Matrix3::zeros();
         let mut responses = vec![];
         for direction in all {
             let own = pushed.clone().map(|(i, share)| (i, direction * share));
             let response = Response::new(joined, solids, direction, self.arms(), own);
-            let mut field = Field::still(motion.x0.len(), solids.len());
+            let mut field = Field::still(inverse_masses.len(), solids.len());
             response.push(direction, &mut field);
             mobility += self.relative(&field) * direction.transpose();
             responses.push(response);
         }
-        self.inverse_mass = self.normal.dot(&(mobility * self.normal));
-        if let Some(rigid) = &mut self.rigid {
-            (rigid.mobility, rigid.responses) = (mobility, responses);
-        }
+        let left = self.normal.dot(&(mobility * self.normal));
+        let is_free = left > LEAST_MOBILITY * self.inverse_mass;
+        self.inverse_mass = if is_free { left } else { 0.0 };
+        self.directed = Some(Box::new(Directed {
+            arms: self.both_arms(),
+            mobility,
+            rolling: self.directed.take().and_then(|directed| directed.rolling),
+            responses,
+        }));
     }
 
     /// Lets rigid bodies get back a part of the separation that they lack.
     pub fn restore_separation(&mut self, law: Law, distance: f64) {
-        if self.rigid.is_some() {
+        if self.is_rigid() {
             self.wanted = restored(&law, distance);
         }
     }
 
     /// Lets the contact resist turns by an angular impulse of at most `most` (N m s).
     pub fn resist_turns(&mut self, most: f64, surface: &Surface, motion: &Motion) {
-        let Some(rigid) = self.rigid.as_mut().filter(|_| most > 0.0) else {
+        let Some(directed) = self.directed.as_mut().filter(|_| most > 0.0) else {
             return;
         };
-        let arms = rigid.arms.iter().flatten();
+        let arms = directed.arms.iter().flatten();
         let yields = arms.fold(Matrix3::zeros(), |sum, arm| sum + arm.inverse_inertia);
         let spin = |i: u32| match surface.vertex(i) {
             Vertex::Obstacle(k) => motion.spins[k],
             _ => Vector3::zeros(),
         };
-        rigid.rolling = Some(Rolling {
+        directed.rolling = Some(Rolling {
             most,
             inertia: yields.try_inverse().unwrap_or_default(),
             obstacle: spin(self.points[0]) - spin(self.points[3]),
@@ -164,12 +181,9 @@ impl ContactPair {
 
     /// Adds the resistance to turns of a contact at the same point.
     pub fn add_resistance(&mut self, other: &Self) {
-        let others = other
-            .rigid
-            .as_ref()
-            .and_then(|rigid| rigid.rolling.as_ref());
-        let own = self.rigid.as_mut().and_then(|rigid| rigid.rolling.as_mut());
-        if let (Some(own), Some(other)) = (own, others) {
+        let other = other.directed.as_ref().and_then(|it| it.rolling.as_ref());
+        let own = self.directed.as_mut().and_then(|it| it.rolling.as_mut());
+        if let (Some(own), Some(other)) = (own, other) {
             own.most += other.most;
         }
     }
@@ -177,7 +191,7 @@ impl ContactPair {
     /// Returns the angular impulse (N m s) that stops the relative turn in a span of time (s, or 1
     /// for velocities), and the largest one; none if the contact does not resist turns.
     pub fn turning(&self, field: &Field, span: f64) -> Option<(Vector3<f64>, f64)> {
-        let rolling = self.rigid.as_ref()?.rolling.as_ref()?;
+        let rolling = self.directed.as_ref()?.rolling.as_ref()?;
         let turned = self
             .arms()
             .fold(rolling.obstacle * span, |sum, arm| sum + arm.turn(field));
@@ -200,18 +214,19 @@ impl ContactPair {
 
     /// Returns the arms at rigid bodies.
     fn arms(&self) -> impl Iterator<Item = &Arm> {
-        let arms = self.rigid.as_ref().map(|rigid| rigid.arms.iter());
+        let arms = self.directed.as_ref().map(|directed| directed.arms.iter());
         arms.into_iter().flatten().flatten()
     }
 
     /// Returns the arm of each side that is a rigid body.
     pub fn both_arms(&self) -> [Option<Arm>; 2] {
-        self.rigid.as_ref().map_or([None; 2], |rigid| rigid.arms)
+        let directed = self.directed.as_ref();
+        directed.map_or([None; 2], |directed| directed.arms)
     }
 
     /// Returns whether a side is a rigid body.
     pub fn is_rigid(&self) -> bool {
-        self.rigid.is_some()
+        self.arms().next().is_some()
     }
 
     /// Returns the numbers of the rigid bodies that touch.
@@ -219,10 +234,15 @@ impl ContactPair {
         self.arms().map(|arm| arm.solid)
     }
 
-    /// Returns whether joints pass its impulses on.
+    /// Returns the changes by impulses in all directions that matter, if constraints pass them on.
+    pub fn responses(&self) -> &[Response] {
+        let directed = self.directed.as_ref();
+        directed.map_or(&[], |directed| &directed.responses)
+    }
+
+    /// Returns whether constraints pass its impulses on.
     pub fn is_joined(&self) -> bool {
-        let rigid = self.rigid.as_ref();
-        rigid.is_some_and(|rigid| !rigid.responses.is_empty())
+        !self.responses().is_empty()
     }
 
     /// Returns whether impulses at this contact have the same effect on the rigid bodies as those
@@ -241,16 +261,18 @@ impl ContactPair {
     /// Returns the change of the relative velocity along a direction by an impulse along it (1/kg).
     pub fn mobility(&self, direction: Vector3<f64>) -> f64 {
         let squared = direction.norm_squared();
-        match &self.rigid {
-            Some(rigid) if squared > 0.0 => direction.dot(&(rigid.mobility * direction)) / squared,
+        match &self.directed {
+            Some(directed) if squared > 0.0 => {
+                direction.dot(&(directed.mobility * direction)) / squared
+            }
             _ => self.inverse_mass,
         }
     }
 
     /// Returns the change of the relative velocity (m/s) by an impulse (N s).
     pub fn change(&self, impulse: Vector3<f64>) -> Vector3<f64> {
-        match &self.rigid {
-            Some(rigid) => rigid.mobility * impulse,
+        match &self.directed {
+            Some(directed) => directed.mobility * impulse,
             None => impulse * self.inverse_mass,
         }
     }
@@ -263,8 +285,8 @@ impl ContactPair {
     /// Gives the first primitive an impulse (N s), and the opposite to the second. The points of
     /// rigid bodies must be settled afterwards.
     pub fn push(&self, impulse: Vector3<f64>, inverse_masses: &[f64], field: &mut Field) {
-        if let Some(rigid) = self.rigid.as_ref().filter(|_| self.is_joined()) {
-            for response in &rigid.responses {
+        if self.is_joined() {
+            for response in self.responses() {
                 response.push(impulse, field);
             }
             return;
@@ -340,11 +362,19 @@ impl ContactPair {
     /// Returns the impulse of friction (N s), after `so_far`, that stops a slip (m/s) as far as the
     /// largest one allows.
     pub fn held(&self, so_far: Vector3<f64>, slip: Vector3<f64>, most: f64) -> Vector3<f64> {
-        limited_to(so_far - slip / self.mobility(slip), most)
+        let mobility = self.mobility(slip);
+        // Constraints may leave it no way to move there.
+        let stopped = if mobility > 0.0 {
+            so_far - slip / mobility
+        } else {
+            so_far
+        };
+        limited_to(stopped, most)
     }
 }
 
 /// Least separation after an impulse.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Least {
     /// Relative velocity before all impulses (m/s).
     pub before: Vector3<f64>,

@@ -120,7 +120,7 @@ impl Surface {
 
     /// Returns whether a vertex is a particle without triangles and edges, or a point of a round
     /// shape.
-    pub(super) fn is_single(&self, vertex: u32) -> bool {
+    pub(crate) fn is_single(&self, vertex: u32) -> bool {
         let is_alone = || self.singles.get(vertex as usize).is_some_and(|is| *is);
         self.radius(vertex) > 0.0 || is_alone()
     }

@@ -1,4 +1,9 @@
-//! Impact of a pair at its time within a step, with the speed of restitution.
+//! Impacts at one time: of a particle on an obstacle, and of pairs of surfaces at their time within
+//! a step.
+//!
+//! What touches gets an impulse along the normal, after which it separates at least at the speed of
+//! restitution, and Coulomb friction, by projected Gauss-Seidel iteration over all impacts of the
+//! time (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988).
 
 use nalgebra::Vector3;
 
@@ -16,23 +21,131 @@ use crate::interval::Interval;
 /// Accuracy of the solution, as a share of the speed of an impact.
 const TOLERANCE: f64 = 1e-13;
 
+/// Largest number of passes over the impacts of one time.
+const MAX_SWEEPS: usize = 200;
+
 /// Share of its approach by which a pair that does not rebound stays farther apart than where it
 /// touched, so that rounding does not make it a hit again.
 const MARGIN_SHARE: f64 = 1e-6;
 
+/// Impulse at a contact.
+pub(super) struct Blow {
+    pub contact: ContactPair,
+    /// Relative velocity before the impact, and the least speed at which the sides separate.
+    pub least: Least,
+    /// Whether that is a speed of restitution.
+    pub rebounds: bool,
+    /// Impulse on the first side (N s).
+    pub impulse: Vector3<f64>,
+}
+
+impl Blow {
+    /// Creates a blow without an impulse yet.
+    pub fn new(contact: ContactPair, least: Least, rebounds: bool) -> Self {
+        Self {
+            contact,
+            least,
+            rebounds,
+            impulse: Vector3::zeros(),
+        }
+    }
+
+    /// Changes the impulse so that the sides separate as fast as they have to, with friction.
+    /// Returns whether it was right.
+    fn press(&mut self, changes: &mut Field, inverse_masses: &[f64]) -> bool {
+        if self.contact.inverse_mass <= 0.0 {
+            return true;
+        }
+        let (so_far, least) = (self.impulse, &self.least);
+        let change = self.contact.press(so_far, least, inverse_masses, changes);
+        self.impulse += change;
+        let size = self.least.speed + self.least.before.norm();
+        self.contact.change(change).norm() <= TOLERANCE * size
+    }
+
+    /// Tells constraints of the impulse, if they pass it on.
+    pub fn note(&self, changes: &Field, joints: &dyn Joints) {
+        if self.contact.is_joined() {
+            joints.note(self.impulse.norm(), self.work(changes));
+        }
+    }
+
+    /// Returns the work of the impulse (J), with the changes of velocities by all of them.
+    fn work(&self, changes: &Field) -> f64 {
+        let sum = self.least.before * 2.0 + self.contact.relative(changes);
+        0.5 * self.impulse.dot(&sum)
+    }
+}
+
+/// Number of bisections of the share of restitution with which impacts gain no energy.
+const BISECTIONS: usize = 20;
+
+/// Energy that impacts gain over the size of their work, up to which it is a rounding error.
+const ROUNDING: f64 = 1e-9;
+
+/// Finds the impulses of all impacts of one time, and the changes of velocities.
+///
+/// Where friction reverses a slip during an impact, speeds of restitution can ask for more energy
+/// than there is (Kane, *A dynamics puzzle*, 1984). All of them are then reduced by one share, with
+/// which the impacts gain none.
+pub(super) fn solve<'a>(
+    blows: impl Iterator<Item = &'a mut Blow>,
+    changes: &mut Field,
+    inverse_masses: &[f64],
+) {
+    let mut blows: Vec<_> = blows.collect();
+    let speeds: Vec<_> = blows.iter().map(|blow| blow.least.speed).collect();
+    let none = changes.clone();
+    let mut gains = |share: f64, changes: &mut Field| {
+        changes.clone_from(&none);
+        for (blow, speed) in blows.iter_mut().zip(&speeds) {
+            let kept = if blow.rebounds { share } else { 1.0 };
+            (blow.least.speed, blow.impulse) = (speed * kept, Vector3::zeros());
+        }
+        sweep(&mut blows, changes, inverse_masses);
+        let works = blows.iter().map(|blow| blow.work(changes));
+        let (sum, size) = works.fold((0.0, 0.0), |(sum, size), work: f64| {
+            (sum + work, size + work.abs())
+        });
+        let may_gain = blows.iter().any(|blow| blow.rebounds);
+        may_gain && sum > ROUNDING * size
+    };
+    if !gains(1.0, changes) {
+        return;
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        *(if gains(middle, changes) {
+            &mut high
+        } else {
+            &mut low
+        }) = middle;
+    }
+    gains(low, changes);
+}
+
+/// Passes over impacts until all impulses are right.
+fn sweep(blows: &mut [&mut Blow], changes: &mut Field, inverse_masses: &[f64]) {
+    for _ in 0..MAX_SWEEPS {
+        let mut solved = true;
+        for blow in &mut *blows {
+            solved &= blow.press(changes, inverse_masses);
+        }
+        if solved {
+            break;
+        }
+    }
+}
+
 /// Pair that touches.
 pub(super) struct Impact {
     pub candidate: Candidate,
-    /// Contact at the time of the impact. It separates by `wanted`, besides, where it does not
-    /// rebound: that cancels the approach after the touch, and restores missing separation.
-    contact: ContactPair,
-    /// Relative velocity before the impact, and the least speed at which the pair separates.
-    least: Least,
-    /// Whether that is a rebound.
-    pub rebounds: bool,
+    /// Blow at the time of the impact. The contact separates by `wanted`, besides, where it does
+    /// not rebound: that cancels the approach after the touch, and restores missing separation.
+    pub blow: Blow,
     /// Time from the impact to the end of the step (s).
     pub left: f64,
-    pub impulse: Vector3<f64>,
 }
 
 impl Impact {
@@ -106,24 +219,23 @@ impl Impact {
             contact.wanted =
                 restored(&law, distance) - (1.0 - time) * approach + MARGIN_SHARE * approach.abs();
         }
+        let least = Least {
+            before,
+            speed,
+            friction: law.skin.friction,
+        };
         Some(Self {
             candidate: *pair,
-            contact,
-            least: Least {
-                before,
-                speed,
-                friction: law.skin.friction,
-            },
-            rebounds,
+            blow: Blow::new(contact, least, rebounds),
             left,
-            impulse: Vector3::zeros(),
         })
     }
 
-    /// Lets joints pass impulses on, if they hold a body that is struck.
+    /// Lets constraints pass impulses on, if they hold something that is struck.
     pub fn join(&mut self, joined: Joined, motion: &Motion) {
-        let is_smooth = self.least.friction == 0.0;
-        self.contact.join(joined, is_smooth, motion);
+        let is_smooth = self.blow.least.friction == 0.0;
+        let (masses, solids) = (&motion.inverse_masses, &motion.solids);
+        self.blow.contact.join(joined, is_smooth, masses, solids);
     }
 
     /// Returns whether impulses of this impact have the same effect as those of another one between
@@ -133,46 +245,24 @@ impl Impact {
             let pair = &impact.candidate;
             [pair.points[0], pair.points[pair.kind.first()]].map(|i| surface.vertex(i))
         };
-        self.contact.is_rigid()
-            && bodies(self) == bodies(other)
-            && self.contact.is_at(&other.contact)
-    }
-
-    /// Changes the impulse so that the pair separates as fast as it has to, with its friction.
-    /// Returns whether it was right.
-    pub fn press(&mut self, changes: &mut Field, inverse_masses: &[f64]) -> bool {
-        if self.contact.inverse_mass <= 0.0 {
-            return true;
-        }
-        let so_far = self.impulse;
-        let change = self
-            .contact
-            .press(so_far, &self.least, inverse_masses, changes);
-        self.impulse += change;
-        let size = self.least.speed + self.least.before.norm();
-        self.contact.change(change).norm() <= TOLERANCE * size
-    }
-
-    /// Tells joints of the impulse, if they pass it on.
-    pub fn note(&self, changes: &Field, joints: &dyn Joints) {
-        if self.contact.is_joined() {
-            let sum = self.least.before * 2.0 + self.contact.relative(changes);
-            joints.note(self.impulse.norm(), 0.5 * self.impulse.dot(&sum));
-        }
+        let [own, others] = [self, other].map(|impact| &impact.blow.contact);
+        own.is_rigid() && bodies(self) == bodies(other) && own.is_at(others)
     }
 
     /// Changes the motion by the impulse.
     pub fn apply(&self, changes: &Field, h: f64, motion: &mut Motion) {
-        let contact = &self.contact;
+        let Blow {
+            contact, impulse, ..
+        } = &self.blow;
         let changed = contact.relative(changes).dot(&contact.normal);
         // A pair that does not rebound stays where it touched; for others, the course from there on
         // is new.
-        let span = if self.rebounds {
+        let span = if self.blow.rebounds {
             self.left
         } else {
             (contact.wanted / changed).clamp(0.0, h)
         };
-        let impulse = self.impulse;
+        let impulse = *impulse;
         let (points, weights) = (contact.points, contact.weights);
         motion.impulses.share(points, weights, impulse);
         let masses = &motion.inverse_masses;
@@ -192,7 +282,7 @@ impl Impact {
     /// after the impact.
     fn late_arms(&self, delay: f64, motion: &Motion) -> [Option<Arm>; 2] {
         let velocity = |arm: &Arm| motion.v[motion.solids[arm.solid].center];
-        let arms = self.contact.both_arms();
+        let arms = self.blow.contact.both_arms();
         let own = arms.each_ref().map(|arm| arm.as_ref().map(velocity));
         let mean = match own {
             [Some(a), Some(b)] => (a + b) * 0.5,

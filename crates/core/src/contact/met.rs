@@ -1,24 +1,18 @@
 //! Contacts of particles with one obstacle in a step.
-//!
-//! First contact of a particle with an obstacle within a step.
-//!
-//! The particle follows a cubic, the obstacle its path. On an interval of the step, the distance is
-//! bounded from below: by the largest relative speed and, for a convex shape, by the plane
-//! perpendicular to the shortest line in the middle of the interval. Intervals whose bound is not
-//! above 0 are halved, and the earlier half is searched first (conservative advancement: Mirtich,
-//! *Impulse-based dynamic simulation of rigid body systems*, 1996). No contact is missed, however
-//! fast or thin the obstacle is.
 
 use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::approach::Approach;
+use super::contact_pair::Least;
 use super::impulse::{Impulses, across, change_in_impact, rebound_speed};
 use super::motion::Guarded;
 use super::obstacle::{Course, Obstacle, velocity};
+use super::response::Joints;
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
-use crate::geometry::closest::{Nearest, Separation};
+use crate::geometry::closest::Nearest;
 use crate::interval::Interval;
 use crate::path::Pose;
 
@@ -53,6 +47,20 @@ pub(super) struct Noted<'a> {
     pub impulses: &'a mut Impulses,
     /// Shares of the step after which particles rebounded.
     pub rebounds: &'a mut Vec<f64>,
+    /// Constraints that pass impulses on, and the impacts of the particles that they hold, which
+    /// have changed no velocity yet.
+    pub joints: Option<&'a dyn Joints>,
+    pub held: &'a mut Vec<PointImpact>,
+}
+
+/// Impact of a particle on an obstacle, which constraints may pass on.
+#[derive(Clone, Debug)]
+pub(super) struct PointImpact {
+    pub particle: usize,
+    pub normal: Vector3<f64>,
+    pub least: Least,
+    /// Time that remains of the step after a rebound (s).
+    pub left: f64,
 }
 
 /// End of a slide within a step.
@@ -65,18 +73,46 @@ pub struct Stop {
     pub way: f64,
 }
 
+impl PointImpact {
+    /// Returns the change of the velocity (m/s) of a particle that is free.
+    fn change(&self) -> Vector3<f64> {
+        let Least {
+            before,
+            speed,
+            friction,
+        } = self.least;
+        change_in_impact(before, self.normal, speed, friction)
+    }
+}
+
 impl Noted<'_> {
     /// Notes the rebound of particle i, after a share of the step, by an impulse (N s). Without it,
     /// the particle would have gone into the obstacle to that depth (m).
     fn add_rebound(&mut self, i: usize, share: f64, depth: f64, impulse: Vector3<f64>) {
+        self.add_depth(depth, share);
+        self.add_contact(i, impulse);
+        self.rebounds.push(share);
+    }
+
+    /// Notes the depth (m) to which a particle moves into the obstacle, which it touches after a
+    /// share of the step.
+    fn add_depth(&mut self, depth: f64, share: f64) {
         if depth > self.statistics.depth {
             self.statistics.depth = depth;
             self.statistics.touched = share;
         }
+    }
+
+    /// Notes the contact of particle i, by an impulse (N s).
+    pub fn add_contact(&mut self, i: usize, impulse: Vector3<f64>) {
         self.statistics.contacts += 1;
         self.statistics.impulse += impulse.norm();
         self.impulses.add(i, impulse);
-        self.rebounds.push(share);
+    }
+
+    /// Returns whether constraints hold a particle, and pass its impulses on.
+    pub fn is_held(&self, i: usize) -> bool {
+        self.joints.is_some_and(|joints| joints.hold(i))
     }
 }
 
@@ -92,6 +128,8 @@ pub(super) struct Met<'a> {
     pub struck: &'a [usize],
     pub obstacle: &'a Obstacle,
     pub friction: f64,
+    /// Coefficient of restitution; 0 where the end of the step has its rebounds already.
+    pub restitution: f64,
     /// Time at the beginning of the step, and its length (s).
     pub span: Interval,
     /// Place and orientation of the obstacle at the beginning of the step.
@@ -131,23 +169,31 @@ impl Met<'_> {
             if inside.is_none() && !may_pass || self.inverse_masses[i] == 0.0 {
                 continue;
             }
-            let touch = (may_pass || !is_struck && self.obstacle.restitution > 0.0)
-                .then(|| self.touch(i, [at, row(v, n, i)]))
+            let touch = (may_pass || !is_struck && self.restitution > 0.0)
+                .then(|| self.touch(i, [at, row(v, n, i)], inside.is_some()))
                 .flatten();
             let first = touch.as_ref();
             let passed = first.and_then(|touch| touch.passed(d, inside.as_ref()));
             let Some(nearest) = passed.or(inside) else {
                 continue;
             };
-            if let Some(rebound) = touch.and_then(|touch| self.rebound(row(v, n, i), &touch)) {
-                let end = at + rebound.change * rebound.left;
+            let is_held = noted.is_held(i);
+            let depth = nearest.normal.dot(&(nearest.point - d));
+            if let Some(rebound) = touch.and_then(|touch| self.rebound(i, row(v, n, i), &touch)) {
+                let share = 1.0 - rebound.left / self.span.h;
+                if is_held {
+                    noted.add_depth(depth, share);
+                    noted.rebounds.push(share);
+                    noted.held.push(rebound);
+                    continue;
+                }
+                let change = rebound.change();
+                let end = at + change * rebound.left;
                 // A particle that is inside again at the end of the step is moved out there.
                 if surface(end - c).is_none() {
                     set_row(x, n, i, end);
-                    set_row(v, n, i, row(v, n, i) + rebound.change);
-                    let depth = nearest.normal.dot(&(nearest.point - d));
-                    let impulse = rebound.change / self.inverse_masses[i];
-                    noted.add_rebound(i, 1.0 - rebound.left / self.span.h, depth, impulse);
+                    set_row(v, n, i, row(v, n, i) + change);
+                    noted.add_rebound(i, share, depth, change / self.inverse_masses[i]);
                     continue;
                 }
             }
@@ -157,34 +203,25 @@ impl Met<'_> {
             let inwards = outwards.min(0.0);
             for axis in self.axes.clone() {
                 x[axis * n + i] = c[axis] + nearest.point[axis];
-                v[axis * n + i] -= inwards * nearest.normal[axis];
+                if !is_held {
+                    v[axis * n + i] -= inwards * nearest.normal[axis];
+                }
             }
             if let Some(x0) = self.x0 {
                 // Position if the obstacle had carried the particle along.
                 let carried = self.carried(row(x0, n, i));
-                let depth = nearest.normal.dot(&(nearest.point - d));
                 let approach = nearest.normal.dot(&(carried - at));
                 if self.friction > 0.0 {
-                    let share = if approach > depth * (1.0 + TOUCHING_SHARE) {
-                        depth / approach
-                    } else {
-                        1.0
-                    };
-                    let touched = carried + (at - carried) * (1.0 - share);
+                    let touched = touched([carried, at], [depth, approach]);
                     let slip = across(row(x, n, i) - touched, nearest.normal);
-                    let kept = self.kept(slip, depth);
-                    let held = if kept > 0.0 {
-                        row(x, n, i) - slip * (1.0 - kept)
-                    } else {
-                        surface(touched - c).map_or(touched, |nearest| c + nearest.point)
+                    let held = match self.kept(slip, depth) {
+                        0.0 => surface(touched - c).map_or(touched, |nearest| c + nearest.point),
+                        kept => row(x, n, i) - slip * (1.0 - kept),
                     };
                     set_row(x, n, i, held);
                 }
                 let moved_in = depth.min(approach);
-                if moved_in > noted.statistics.depth {
-                    noted.statistics.depth = moved_in;
-                    noted.statistics.touched = 1.0 - moved_in / approach;
-                }
+                noted.add_depth(moved_in, 1.0 - moved_in / approach);
             }
             if self.friction > 0.0 {
                 let slip = across(velocity, nearest.normal);
@@ -203,12 +240,17 @@ impl Met<'_> {
                     self.velocity(row(x, n, i) - c)
                 };
                 let left = self.left(i, (slip, kept), nearest.normal);
-                set_row(v, n, i, own + outwards + left);
+                if !is_held {
+                    set_row(v, n, i, own + outwards + left);
+                }
             }
-            noted.statistics.contacts += 1;
-            let change = row(v, n, i) - own - velocity;
-            noted.statistics.impulse += change.norm() / self.inverse_masses[i];
-            noted.impulses.add(i, change / self.inverse_masses[i]);
+            if is_held {
+                let impact = self.impact(i, nearest.normal, (velocity, 0.0));
+                noted.held.push(impact);
+            } else {
+                let change = row(v, n, i) - own - velocity;
+                noted.add_contact(i, change / self.inverse_masses[i]);
+            }
         }
     }
 
@@ -223,8 +265,9 @@ impl Met<'_> {
     }
 
     /// Finds the first touch of particle i in the step, at whose end its position and velocity are
-    /// [x, v], if it begins outside.
-    fn touch(&self, i: usize, [x, v]: [Vector3<f64>; 2]) -> Option<Touch> {
+    /// [x, v], if it begins outside. One that ends `inside` touches at the end of the step at the
+    /// latest.
+    fn touch(&self, i: usize, [x, v]: [Vector3<f64>; 2], inside: bool) -> Option<Touch> {
         let (Interval { t, h }, n) = (self.span, self.inverse_masses.len());
         let course = Course {
             x: [row(self.x0?, n, i), x],
@@ -244,7 +287,9 @@ impl Met<'_> {
         } else {
             Some(0.0)
         };
-        let touches = flight.is_none();
+        // One that touches from the beginning and approaches has an impact there.
+        let begins = flight.is_none() && self.restitution > 0.0 && approach.closes();
+        let touches = flight.is_none() && !begins;
         let shape = &self.obstacle.shape;
         if touches && !shape.is_convex() {
             return None;
@@ -254,7 +299,12 @@ impl Met<'_> {
         } else {
             0.0
         };
-        let share = approach.first(flight.unwrap_or(0.0), depth)?;
+        let last = (inside && !touches).then_some(1.0);
+        let share = if begins {
+            0.0
+        } else {
+            approach.first(flight.unwrap_or(0.0), depth).or(last)?
+        };
         let (point, normal) = approach.touched(share);
         let pose = self.obstacle.at(t + share * h);
         Some(Touch {
@@ -270,8 +320,8 @@ impl Met<'_> {
 
     /// Returns the effect of restitution on a particle, whose velocity at the end of the step is v,
     /// if there is any.
-    fn rebound(&self, v: Vector3<f64>, touch: &Touch) -> Option<Rebound> {
-        let (h, restitution) = (self.span.h, self.obstacle.restitution);
+    fn rebound(&self, i: usize, v: Vector3<f64>, touch: &Touch) -> Option<PointImpact> {
+        let (h, restitution) = (self.span.h, self.restitution);
         if restitution == 0.0 || touch.touches {
             return None;
         }
@@ -287,10 +337,30 @@ impl Met<'_> {
         let press = (begun - ended).dot(&normal) / h;
         let approach = -relative.dot(&normal);
         let speed = rebound_speed(restitution, approach, press, h);
-        (speed > 0.0).then(|| Rebound {
-            change: change_in_impact(relative, normal, speed, self.friction),
+        (speed > 0.0).then(|| PointImpact {
             left: (1.0 - share) * h,
+            ..self.impact(i, normal, (relative, speed))
         })
+    }
+
+    /// Returns the impact of particle i at the end of the step, along a normal, with the relative
+    /// velocity before it and the least speed along the normal after it (m/s).
+    fn impact(
+        &self,
+        i: usize,
+        normal: Vector3<f64>,
+        (before, speed): (Vector3<f64>, f64),
+    ) -> PointImpact {
+        PointImpact {
+            particle: i,
+            normal,
+            least: Least {
+                before,
+                speed,
+                friction: self.friction,
+            },
+            left: 0.0,
+        }
     }
 
     /// Finds the end of the slide of particle i, whose slip at the end of the step (m/s) friction
@@ -360,6 +430,17 @@ impl Met<'_> {
     }
 }
 
+/// Returns where a particle touches on its way between two places (m), the first of which the
+/// obstacle would have carried it to, from the depth that it reaches by an approach (m).
+fn touched([carried, at]: [Vector3<f64>; 2], [depth, approach]: [f64; 2]) -> Vector3<f64> {
+    let share = if approach > depth * (1.0 + TOUCHING_SHARE) {
+        depth / approach
+    } else {
+        1.0
+    };
+    carried + (at - carried) * (1.0 - share)
+}
+
 /// First touch of a particle and the obstacle in a step.
 struct Touch {
     /// Share of the step after which they touch.
@@ -389,311 +470,5 @@ impl Touch {
             point: d + normal * depth,
             normal,
         })
-    }
-}
-
-/// Change of a particle's velocity by a rebound (m/s), and the time that remains of the step (s).
-struct Rebound {
-    change: Vector3<f64>,
-    left: f64,
-}
-
-/// Length below which an interval is not halved, as a share of the step.
-const MIN_INTERVAL: f64 = 1e-7;
-
-/// Largest number of intervals in a search: if it does not decide, that counts as contact.
-const MAX_INTERVALS: usize = 10_000;
-
-/// Largest number of halvings of an interval.
-const MAX_HALVINGS: usize = 64;
-
-/// Number of Newton steps from an interval to the contact in it.
-const NEWTON_STEPS: usize = 8;
-
-/// Particle and obstacle during a step.
-pub(crate) struct Approach<'a> {
-    obstacle: &'a Obstacle,
-    course: &'a Course,
-    /// Time at the beginning of the step (s).
-    t: f64,
-    /// Bounds of the first and the second derivative of the particle's position relative to the
-    /// obstacle, by the share of the step (m).
-    speed: f64,
-    bend: f64,
-}
-
-impl<'a> Approach<'a> {
-    /// Creates the approach of a particle on a course that begins at time t (s).
-    pub fn new(obstacle: &'a Obstacle, course: &'a Course, t: f64) -> Self {
-        let h = course.h;
-        let times = [t, t + h];
-        let [speed, acceleration] = obstacle.path.bounds(times);
-        let [own_speed, own_bend] = course.bounds();
-        let (mut speed, mut bend) = (own_speed + speed * h, own_bend + acceleration * h * h);
-        if let Some(turn) = obstacle.turn.filter(|turn| turn.is_on(times)) {
-            let place = obstacle.path.at(t).position;
-            let away = (course.x[0] - place).norm() + speed;
-            let angle = turn.rate.abs() * h;
-            bend += angle * (2.0 * speed + angle * away);
-            speed += angle * away;
-            if turn
-                .known_times()
-                .iter()
-                .any(|time| t < *time && *time < t + h)
-            {
-                bend = f64::INFINITY;
-            }
-        }
-        Self {
-            obstacle,
-            course,
-            t,
-            speed,
-            bend,
-        }
-    }
-
-    /// Returns the position (m) of the particle at a share of the step, in the obstacle's own
-    /// frame, before it turned.
-    fn seen(&self, share: f64) -> Vector3<f64> {
-        let pose = self.obstacle.at(self.t + share * self.course.h);
-        pose.inwards(self.course.position(share) - pose.place.position)
-    }
-
-    /// Returns the separation at a share of the step, in the obstacle's own frame.
-    pub fn separation(&self, share: f64) -> Separation {
-        self.obstacle.shape.separation(self.seen(share))
-    }
-
-    /// Returns the point of the surface nearest to the particle (m) at a share of the step, and the
-    /// normal there, in the obstacle's own frame.
-    pub fn touched(&self, share: f64) -> (Vector3<f64>, Vector3<f64>) {
-        let seen = self.seen(share);
-        let Separation { distance, normal } = self.obstacle.shape.separation(seen);
-        (seen - normal * distance, normal)
-    }
-
-    /// Returns a share of the step up to which a particle that begins at the surface flies above
-    /// it, if it rises to a height, or falls from one, above the least that counts (m). That may
-    /// depend on the acceleration towards the surface by the share of the step (m).
-    pub fn flight(&self, least: impl Fn(f64) -> f64) -> Option<f64> {
-        let begun = self.separation(0.0);
-        let pose = self.obstacle.at(self.t);
-        let (normal, away) = (
-            pose.outwards(begun.normal),
-            self.course.x[0] - pose.place.position,
-        );
-        let rise = normal.dot(&(self.course.v[0] - velocity(&pose, away))) * self.course.h;
-        let fall = -normal.dot(&self.course.bend());
-        let least = least(fall);
-        let crest = if fall > rise.abs() {
-            rise / fall
-        } else {
-            rise.signum()
-        };
-        let height = begun.distance.max(0.0);
-        if height + 0.5 * rise * crest <= least {
-            return None;
-        }
-        if rise <= 0.0 {
-            return (height > 0.0).then_some(0.0);
-        }
-        // Where the bend grows, the particle may be back at the time of that crest.
-        let mut share = crest;
-        while share > f64::EPSILON && 0.5 * rise * share > least {
-            if self.separation(share).distance > least {
-                return Some(share);
-            }
-            share *= 0.5;
-        }
-        None
-    }
-
-    /// Returns a lower bound of the distance (m) between two shares of the step.
-    fn least(&self, [a, b]: [f64; 2]) -> f64 {
-        let middle = 0.5 * (a + b);
-        let seen = self.seen(middle);
-        let Separation { distance, normal } = self.obstacle.shape.separation(seen);
-        let least = distance - self.speed * 0.5 * (b - a);
-        if !self.obstacle.shape.is_convex() || !self.bend.is_finite() {
-            return least;
-        }
-        let beyond = |share: f64| normal.dot(&(self.seen(share) - seen));
-        let sagitta = self.bend * (b - a).powi(2) / 8.0;
-        let plane = distance + beyond(a).min(beyond(b)).min(0.0) - sagitta;
-        least.max(plane)
-    }
-
-    /// Finds the first share of the step, from `from` on, at which the particle is within the
-    /// obstacle by `depth` (m), if there is one.
-    pub fn first(&self, from: f64, depth: f64) -> Option<f64> {
-        let may_touch = |interval| self.least(interval) + depth <= 0.0;
-        let found = earliest([from, 1.0], MIN_INTERVAL, may_touch)?;
-        Some(self.refine(found, depth))
-    }
-
-    /// Finds the share of the step near a given one at which the depth (m) is reached.
-    fn refine(&self, share: f64, depth: f64) -> f64 {
-        let distance = |share: f64| self.separation(share).distance + depth;
-        let mut now = share;
-        for _ in 0..NEWTON_STEPS {
-            let (here, there) = (distance(now), distance(now + MIN_INTERVAL));
-            let next = now - here * MIN_INTERVAL / (there - here);
-            if !(next - share).is_finite() || (next - share).abs() > 4.0 * MIN_INTERVAL {
-                return share;
-            }
-            let is_found = (next - now).abs() < f64::EPSILON;
-            now = next.clamp(0.0, 1.0);
-            if is_found {
-                break;
-            }
-        }
-        now
-    }
-}
-
-/// Finds the beginning of the first part of an interval, shorter than `finest`, in which an event
-/// may happen. Intervals in which it may happen are halved.
-pub(crate) fn earliest(
-    whole: [f64; 2],
-    finest: f64,
-    may_happen: impl Fn([f64; 2]) -> bool,
-) -> Option<f64> {
-    // Each halving adds one interval.
-    let mut left = [whole; MAX_HALVINGS];
-    let mut count = 1;
-    for _ in 0..MAX_INTERVALS {
-        if count == 0 {
-            return None;
-        }
-        count -= 1;
-        let [a, b] = left[count];
-        if !may_happen([a, b]) {
-            continue;
-        }
-        if b - a < finest || count + 2 > MAX_HALVINGS {
-            return Some(a);
-        }
-        let middle = 0.5 * (a + b);
-        (left[count], left[count + 1]) = ([middle, b], [a, middle]);
-        count += 2;
-    }
-    Some(left[count.max(1) - 1][0])
-}
-
-impl Course {
-    /// Bounds the first and the second derivative of the position with respect to the share of the
-    /// step (m).
-    pub fn bounds(&self) -> [f64; 2] {
-        // Control points of the polynomial's Bézier form, which stays within their convex hull.
-        let [a, d] = self.x;
-        let [b, c] = [
-            a + self.v[0] * (self.h / 3.0),
-            d - self.v[1] * (self.h / 3.0),
-        ];
-        let speeds = [b - a, c - b, d - c].map(|way| 3.0 * way.norm());
-        let bends = [a - 2.0 * b + c, b - 2.0 * c + d].map(|way| 6.0 * way.norm());
-        [
-            speeds.into_iter().fold(0.0, f64::max),
-            bends.into_iter().fold(0.0, f64::max),
-        ]
-    }
-
-    /// Returns the second derivative of the position with respect to the share of the step at its
-    /// beginning (m).
-    fn bend(&self) -> Vector3<f64> {
-        let [a, b] = self.v.map(|v| v * self.h);
-        (self.x[1] - self.x[0]) * 6.0 - a * 4.0 - b * 2.0
-    }
-
-    /// Returns a distance (m) from the middle of the chord within which the whole course stays,
-    /// with room for a polynomial that is not quite a cubic.
-    pub fn reach(&self) -> f64 {
-        let chord = self.x[1] - self.x[0];
-        let bulges = self.v.map(|v| (v * self.h - chord).norm());
-        0.5 * (chord.norm() + bulges[0] + bulges[1])
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::Shape;
-    use crate::path::Path;
-    use crate::random::SplitMix;
-
-    /// Draws a random vector whose coordinates are at most `most` in magnitude.
-    fn vector(random: &mut SplitMix, most: f64) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| random.between(-most, most))
-    }
-
-    /// Small, thin, fast and turning obstacles, compared with a fine sampling of the distance.
-    #[test]
-    fn no_contact_is_missed() {
-        let mut random = SplitMix(5);
-        let mut hits = 0;
-        for _ in 0..3000 {
-            let thin = random.between(1e-3, 0.1);
-            let shape = match (random.between(0.0, 3.0)) as u32 {
-                0 => Shape::Sphere { radius: thin },
-                1 => Shape::turned_box(Vector3::new(0.3, thin, 0.3), vector(&mut random, 2.0))
-                    .unwrap(),
-                _ => Shape::Capsule {
-                    ends: [vector(&mut random, 0.3), vector(&mut random, 0.3)],
-                    radius: thin,
-                },
-            };
-            let path = match (random.between(0.0, 3.0)) as u32 {
-                0 => Path::Still(vector(&mut random, 0.2)),
-                1 => Path::Sine {
-                    center: vector(&mut random, 0.2),
-                    amplitude: vector(&mut random, 1.0),
-                    rate: random.between(0.0, 5.0),
-                    phase: random.between(0.0, 6.0),
-                },
-                _ => Path::Line {
-                    from: vector(&mut random, 1.0),
-                    to: vector(&mut random, 1.0),
-                    start: random.between(0.0, 0.5),
-                    end: random.between(0.5, 1.0),
-                },
-            };
-            let mut obstacle = Obstacle::smooth(shape, path);
-            if random.between(0.0, 1.0) < 0.5 {
-                obstacle.turn = Some(crate::path::Turn {
-                    axis: vector(&mut random, 1.0).normalize(),
-                    rate: random.between(-6.0, 6.0),
-                    start: 0.2,
-                    end: None,
-                });
-            }
-            let course = Course {
-                x: [vector(&mut random, 1.0), vector(&mut random, 1.0)],
-                v: [vector(&mut random, 3.0), vector(&mut random, 3.0)],
-                h: 1.0,
-            };
-            let approach = Approach::new(&obstacle, &course, 0.0);
-            if approach.separation(0.0).distance < 1e-6 {
-                continue;
-            }
-            let samples = 20_000;
-            let share = |k: u32| f64::from(k) / f64::from(samples);
-            let sampled = (0..=samples).find(|k| approach.separation(share(*k)).distance < -1e-9);
-            let found = approach.first(0.0, 0.0);
-            match (sampled, found) {
-                (Some(k), Some(found)) => {
-                    hits += 1;
-                    assert!(found <= share(k), "{obstacle:?} {course:?}");
-                    assert!(found > 0.0 && approach.separation(found).distance.abs() < 1e-5);
-                }
-                (Some(_), None) => panic!("missed: {obstacle:?}"),
-                // Contacts between two samples.
-                (None, Some(found)) => {
-                    assert!(approach.separation(found).distance.abs() < 1e-5);
-                }
-                (None, None) => {}
-            }
-        }
-        assert!(hits > 100, "{hits}");
     }
 }

@@ -12,6 +12,7 @@
 //! the obstacle, so that particles at rest do not creep.
 
 mod advance;
+mod approach;
 mod bounds;
 mod boxes;
 mod candidates;
@@ -42,6 +43,7 @@ mod untangle;
 
 pub use crate::geometry::{ClosedMesh, Closest, PairKind, Shape, Simplices, closest, weighted};
 pub use advance::time_of_impact;
+pub(crate) use approach::{Approach, earliest};
 pub(crate) use check::is_crowded;
 pub use check::{Crossed, crossed};
 pub use check::{Crossing, crossings};
@@ -50,11 +52,11 @@ pub(crate) use guard::{Bodies, guard};
 pub(crate) use impulse::{Impulses, rebound_speed, shortest_rebound};
 pub use layer::ContactLayer;
 pub(crate) use layer::bulge;
-pub(crate) use met::{Approach, earliest};
 pub use met::{Statistics, Stop};
 pub use motion::Guarded;
 pub(crate) use obstacle::Course;
 pub use obstacle::Obstacle;
+pub(crate) use obstacle::reaching_on;
 pub(crate) use resolve::SIMULTANEOUS_SHARE;
 pub use resolve::{ContactPhase, Step, resolve};
 pub(crate) use response::Joints;

@@ -75,6 +75,37 @@ impl Obstacle {
         matches!(self.path, Path::Still(_)) && self.turn.is_none()
     }
 
+    /// Returns whether its reaction is known at each stage: its faces are flat, and it does not
+    /// move.
+    pub(crate) fn is_flat(&self) -> bool {
+        let has_faces = matches!(
+            self.shape,
+            Shape::Floor | Shape::Box { .. } | Shape::Mesh(_)
+        );
+        self.is_still() && has_faces
+    }
+
+    /// Returns the height (m) of a point above it, and the normal there, if it does not move.
+    pub(crate) fn height(&self, x: Vector3<f64>) -> (f64, Vector3<f64>) {
+        let pose = self.at(0.0);
+        let seen = self.shape.separation(pose.inwards(x - pose.place.position));
+        (seen.distance, pose.outwards(seen.normal))
+    }
+
+    /// Returns the height (m) of its highest point over the plane through x (m) with this normal,
+    /// at the beginning.
+    pub(crate) fn rise(&self, x: &Vector3<f64>, normal: &Vector3<f64>) -> f64 {
+        let pose = self.at(0.0);
+        let place = (pose.place.position - x).dot(normal);
+        if self.shape == Shape::Floor {
+            let is_level = *normal == Vector3::y();
+            return if is_level { place } else { f64::INFINITY };
+        }
+        let simplices = self.shape.simplices();
+        let heights = (simplices.points.iter()).map(|point| pose.outwards(*point).dot(normal));
+        place + simplices.radius + heights.fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// Checks the numbers of the obstacle.
     ///
     /// # Errors
@@ -120,6 +151,76 @@ impl Course {
         let mean = (x1 - x0) / self.h;
         v0 * left + v1 * s + (mean * 2.0 - v0 - v1) * (3.0 * s * left)
     }
+}
+
+/// Share of the size of a box within which its face lies against another obstacle.
+const AGAINST_SHARE: f64 = 1e-9;
+
+/// Number of lengths, each half of the one before, by which a face is tried to reach on.
+const TRIED_LENGTHS: u32 = 4;
+
+/// Returns the obstacles as single particles meet them, if that differs: a box that stands on a
+/// floor or lies against another box, and does not move, reaches on into it. Nothing that lies on
+/// the one then slips into the other along the face between them, and no seam stops it.
+pub(crate) fn reaching_on(all: &[Obstacle]) -> Option<Vec<Obstacle>> {
+    let reached: Vec<_> = (0..all.len()).map(|k| reach_on(all, k)).collect();
+    if reached.iter().all(Option::is_none) {
+        return None;
+    }
+    let both = all.iter().zip(reached);
+    Some(
+        both.map(|(own, reached)| reached.unwrap_or_else(|| own.clone()))
+            .collect(),
+    )
+}
+
+/// Returns box k, if faces of it lie against other obstacles, with those faces inside these.
+fn reach_on(all: &[Obstacle], k: usize) -> Option<Obstacle> {
+    let (Shape::Box { half_extents, axes }, Path::Still(center)) = (&all[k].shape, &all[k].path)
+    else {
+        return None;
+    };
+    let others = all.iter().enumerate();
+    let is_solid = |other: &Obstacle| matches!(other.shape, Shape::Floor | Shape::Box { .. });
+    let others = others.filter(|(j, other)| *j != k && other.is_still() && is_solid(other));
+    let others: Vec<_> = others.map(|(_, other)| other).collect();
+    if !all[k].is_still() || others.is_empty() {
+        return None;
+    }
+    let none = AGAINST_SHARE * half_extents.max();
+    let (mut low, mut high) = (*half_extents, *half_extents);
+    for axis in 0..3 {
+        for (ends, sign) in [(&mut low, -1.0), (&mut high, 1.0)] {
+            let outwards = axes[axis] * sign;
+            let [a, b] = [1, 2].map(|next| {
+                let across = (axis + next) % 3;
+                axes[across] * half_extents[across]
+            });
+            let corners = [a + b, a - b, b - a, -a - b];
+            let holds = |other: &Obstacle, reach: f64| {
+                let face = center + outwards * (half_extents[axis] + reach);
+                corners
+                    .iter()
+                    .all(|corner| other.depth(0.0, face + corner) >= -none)
+            };
+            let against = others.iter().filter(|other| holds(other, 0.0));
+            let lengths = (0..TRIED_LENGTHS).map(|k| 2.0 * half_extents[axis] / f64::from(1 << k));
+            let reached =
+                against.filter_map(|other| lengths.clone().find(|reach| holds(other, *reach)));
+            ends[axis] += reached.fold(0.0, f64::max);
+        }
+    }
+    let middle = (0..3).fold(*center, |middle, axis| {
+        middle + axes[axis] * (0.5 * (high[axis] - low[axis]))
+    });
+    (low + high != half_extents * 2.0).then(|| Obstacle {
+        shape: Shape::Box {
+            half_extents: (low + high) * 0.5,
+            axes: *axes,
+        },
+        path: Path::Still(middle),
+        ..all[k].clone()
+    })
 }
 
 #[cfg(test)]

@@ -2,12 +2,16 @@
 
 use nalgebra::Vector3;
 
+use super::contact_pair::{ContactPair, Least};
 use super::cut::Pinched;
 use super::guard::{Bodies, guard};
+use super::impact::{Blow, solve};
 use super::impulse::{Impulses, change_in_impact, rebound_speed, shortest_rebound};
 use super::layer::ContactLayer;
-use super::met::{Met, Noted, Statistics};
+use super::met::{Met, Noted, PointImpact, Statistics};
 use super::obstacle::{Obstacle, velocity};
+use super::response::Joined;
+use super::solids::Field;
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
 use crate::geometry::closest::{of_box, of_capsule, of_floor, of_sphere};
@@ -43,6 +47,8 @@ pub struct ContactPhase {
     struck: (Vec<usize>, f64),
     /// Shares of the last step after which particles rebounded.
     rebounds: Vec<f64>,
+    /// Impacts of particles that constraints hold.
+    held: Vec<PointImpact>,
 }
 
 impl ContactPhase {
@@ -55,6 +61,7 @@ impl ContactPhase {
             impulses: (Impulses::with_room_for(dim / 6), 0.0),
             struck: (Vec::with_capacity(dim / 6), 0.0),
             rebounds: Vec::with_capacity(dim / 6),
+            held: vec![],
         }
     }
 
@@ -100,11 +107,12 @@ impl ContactPhase {
         self.impulses.0.clear();
     }
 
-    /// Resolves the contacts of a step of h (s) from time t (s) to y1, as [`resolve`] does.
-    pub fn resolve(
+    /// Resolves the contacts of a step of h (s) from time t (s) to y1, as [`resolve`] does, with
+    /// constraints that pass impulses on.
+    pub(crate) fn resolve(
         &mut self,
         obstacles: &[Obstacle],
-        inverse_masses: &[f64],
+        bodies: Bodies,
         Interval { t, h }: Interval,
         y1: &mut [f64],
     ) -> Statistics {
@@ -114,16 +122,22 @@ impl ContactPhase {
         let (struck, impulse) = &mut self.struck;
         struck.sort_unstable();
         let masses = Masses {
-            inverse: inverse_masses,
+            inverse: bodies.inverse_masses,
             struck,
+            rebound: !bodies.are_struck,
         };
         let mut last = Statistics::default();
         let noted = &mut Noted {
             statistics: &mut last,
             impulses,
             rebounds: &mut self.rebounds,
+            joints: bodies
+                .joints
+                .filter(|_| y1.len() == 6 * bodies.inverse_masses.len()),
+            held: &mut self.held,
         };
         resolve_noting(obstacles, &masses, &step, y1, noted);
+        pass_on(noted, bodies.inverse_masses, y1);
         last.impulse += std::mem::take(impulse);
         struck.clear();
         self.rebounds.sort_unstable_by(f64::total_cmp);
@@ -142,12 +156,22 @@ impl ContactPhase {
     pub(crate) fn strike(
         &mut self,
         obstacles: &[Obstacle],
-        inverse_masses: &[f64],
+        bodies: Bodies,
         (t, h): (f64, f64),
         (none, left_out): (f64, &dyn Fn(f64, Vector3<f64>) -> f64),
         y1: &mut [f64],
     ) {
+        let inverse_masses = bodies.inverse_masses;
         let n = inverse_masses.len();
+        let mut statistics = Statistics::default();
+        let noted = &mut Noted {
+            statistics: &mut statistics,
+            impulses: &mut self.impulses.0,
+            rebounds: &mut self.rebounds,
+            joints: bodies.joints.filter(|_| y1.len() == 6 * n),
+            held: &mut self.held,
+        };
+        noted.held.clear();
         let (x, v) = y1.split_at_mut(3 * n);
         for obstacle in obstacles {
             let pose = obstacle.at(t);
@@ -172,14 +196,28 @@ impl ContactPhase {
                 let height = left_out(obstacle.restitution, row(x, n, i));
                 let shortest = shortest_rebound(press, [height, 0.0]);
                 let speed = rebound_speed(obstacle.restitution, approach, press, shortest);
-                let change = change_in_impact(relative, normal, speed, obstacle.friction);
                 set_row(x, n, i, pose.place.position + point);
-                set_row(v, n, i, row(v, n, i) + change);
-                let impulse = change / inverse_masses[i];
                 self.struck.0.push(i);
-                self.struck.1 += impulse.norm();
+                if noted.is_held(i) {
+                    noted.held.push(PointImpact {
+                        particle: i,
+                        normal,
+                        least: Least {
+                            before: relative,
+                            speed,
+                            friction: obstacle.friction,
+                        },
+                        left: 0.0,
+                    });
+                    continue;
+                }
+                let change = change_in_impact(relative, normal, speed, obstacle.friction);
+                set_row(v, n, i, row(v, n, i) + change);
+                noted.add_contact(i, change / inverse_masses[i]);
             }
         }
+        pass_on(noted, inverse_masses, y1);
+        self.struck.1 += statistics.impulse;
     }
 
     /// Applies the collision safeguard to the surfaces in a step of h (s) from time t (s) to y1.
@@ -218,12 +256,15 @@ pub fn resolve(
     let masses = Masses {
         inverse: inverse_masses,
         struck: &[],
+        rebound: true,
     };
     let mut statistics = Statistics::default();
     let noted = &mut Noted {
         statistics: &mut statistics,
         impulses: &mut Impulses::default(),
         rebounds: &mut vec![],
+        joints: None,
+        held: &mut vec![],
     };
     resolve_noting(obstacles, &masses, step, y1, noted);
     statistics
@@ -235,6 +276,8 @@ struct Masses<'a> {
     inverse: &'a [f64],
     /// Particles that were struck at the end of the step, in order.
     struck: &'a [usize],
+    /// Whether particles rebound within the step.
+    rebound: bool,
 }
 
 /// Does what [`resolve`] does, and records the contacts.
@@ -248,6 +291,7 @@ fn resolve_noting(
     let n = masses.inverse.len();
     noted.impulses.clear();
     noted.rebounds.clear();
+    noted.held.clear();
     for obstacle in obstacles {
         let met = Met {
             x0: step.y0.get(..3 * n),
@@ -256,6 +300,11 @@ fn resolve_noting(
             struck: masses.struck,
             obstacle,
             friction: obstacle.friction,
+            restitution: if masses.rebound {
+                obstacle.restitution
+            } else {
+                0.0
+            },
             span: Interval {
                 t: step.t,
                 h: step.h,
@@ -283,4 +332,41 @@ fn resolve_noting(
             Shape::Floor => met.resolve(y1, noted, of_floor),
         }
     }
+}
+
+/// Applies the impacts of particles that constraints hold, with what these pass on, to y1.
+fn pass_on(noted: &mut Noted, inverse_masses: &[f64], y1: &mut [f64]) {
+    let (Some(joints), false) = (noted.joints, noted.held.is_empty()) else {
+        return;
+    };
+    let n = inverse_masses.len();
+    let held = std::mem::take(noted.held);
+    let joined = Joined { joints, y: y1 };
+    let mut blows: Vec<_> = (held.iter())
+        .map(|impact| {
+            let points = ([impact.particle as u32; 4], [1.0, 0.0, 0.0, 0.0]);
+            let mut contact =
+                ContactPair::with_arms(points, impact.normal, inverse_masses, &[None, None]);
+            let is_smooth = impact.least.friction == 0.0;
+            contact.join(joined, is_smooth, inverse_masses, &[]);
+            Blow::new(contact, impact.least, impact.least.speed > 0.0)
+        })
+        .collect();
+    let mut changes = Field::still(n, 0);
+    solve(blows.iter_mut(), &mut changes, inverse_masses);
+    let mut moves = Field::still(n, 0);
+    for (impact, blow) in held.iter().zip(&blows) {
+        blow.contact
+            .push(blow.impulse * impact.left, inverse_masses, &mut moves);
+        if blow.rebounds {
+            blow.note(&changes, joints);
+        }
+        noted.add_contact(impact.particle, blow.impulse);
+    }
+    let (x, v) = y1.split_at_mut(3 * n);
+    for i in 0..n {
+        set_row(x, n, i, row(x, n, i) + moves[i]);
+        set_row(v, n, i, row(v, n, i) + changes[i]);
+    }
+    *noted.held = held;
 }

@@ -1,28 +1,28 @@
-//! Changes of velocities by impulses on bodies that joints hold.
+//! Changes of velocities by impulses on bodies and particles that constraints hold.
 //!
-//! A joint passes an impulse on at once: the bodies that it joins get the least change of their
-//! velocities, weighted by the masses, with the impulse that the joints can follow. So a body on a
-//! hinge is struck with the mass that the hinge leaves it.
+//! A rod or a joint passes an impulse on at once: what it holds gets the least change of its
+//! velocities, weighted by the masses, with the impulse that the constraints can follow. So a body
+//! on a hinge is struck with the mass that the hinge leaves it, and so is the end of a rod.
 
 use nalgebra::Vector3;
 
 use super::solids::{Arm, Field, Solid};
 use crate::rigid::{ROTATION, Rotation};
 
-/// Constraints that join rigid bodies.
+/// Constraints of a network.
 pub(crate) trait Joints {
-    /// Returns whether a joint holds the rigid body with that centre.
-    fn hold(&self, center: usize) -> bool;
+    /// Returns whether a constraint holds the particle, or the rigid body with that centre.
+    fn hold(&self, i: usize) -> bool;
 
-    /// Changes the velocities in the state y by the least amount, weighted by the masses, so that
-    /// they fit the joints.
+    /// Changes the velocities in the state y, which an impulse alone has given, by the least
+    /// amount, weighted by the masses, so that they fit the constraints.
     fn fit(&self, y: &mut [f64]);
 
     /// Is told of an impulse (N s) that they have passed on, and of its work (J).
     fn note(&self, impulse: f64, work: f64);
 }
 
-/// Joints, with the state at the end of a step.
+/// Constraints, with the state at the end of a step.
 #[derive(Clone, Copy)]
 pub(super) struct Joined<'a> {
     pub joints: &'a dyn Joints,
@@ -86,6 +86,11 @@ impl Response {
                 .filter(|(_, it)| *it != [Vector3::zeros(); 2])
                 .collect(),
         }
+    }
+
+    /// Lists the particles, without those of bodies, whose velocities change.
+    pub fn points(&self) -> impl Iterator<Item = u32> {
+        self.points.iter().map(|(i, _)| *i as u32)
     }
 
     /// Changes a field by an impulse (N s), as far as it is in this direction. The points of the

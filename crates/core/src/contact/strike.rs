@@ -1,8 +1,6 @@
 //! Impacts of rigid and of elastic bodies, at the time within the step at which they touch.
 //!
-//! Pairs that touch at one time get impulses along the normal, after which each separates at least
-//! at the speed of restitution, and Coulomb friction, by projected Gauss-Seidel iteration over all
-//! of them (Moreau, *Unilateral contact and dry friction in finite freedom dynamics*, 1988). An
+//! Pairs that touch at one time get [impulses](super::impact). An
 //! impulse J acts at one point p of both bodies, a time s before the end of the step. A free body
 //! ends the step at x + s J / m with the angular momentum L + (p - x + s v) x J: as if it had moved
 //! from x - s v with the momentum m v + J. Its momentum and its angular momentum about any point
@@ -13,10 +11,10 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::candidates::{Candidates, Linear};
-use super::impact::Impact;
+use super::impact::{Impact, solve};
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
-use super::response::Joined;
+use super::response::{Joined, Response};
 use super::solids::Field;
 use super::surface::Surface;
 use crate::geometry::{closest, weighted};
@@ -24,9 +22,6 @@ use crate::interval::Interval;
 
 /// Largest number of times in a step at which a body has impacts.
 const MAX_TIMES: usize = 12;
-
-/// Largest number of passes over the impacts of one time.
-const MAX_SWEEPS: usize = 200;
 
 /// Applies impulses to the pairs that touch in a step of h (s), one time after another, as long as
 /// there are pairs with a rigid side or with restitution. Joints follow impacts that rebound.
@@ -52,7 +47,7 @@ pub(super) fn strike(
             else {
                 continue;
             };
-            if let Some(joined) = joined.filter(|_| impact.rebounds) {
+            if let Some(joined) = joined.filter(|_| impact.blow.rebounds) {
                 impact.join(joined, motion);
             }
             if !impacts
@@ -64,8 +59,9 @@ pub(super) fn strike(
             }
         }
         let mut changes = Field::still(motion.x0.len(), motion.solids.len());
-        solve(&mut impacts, &mut changes, &motion.inverse_masses);
-        impacts.retain(|impact| impact.impulse != Vector3::zeros());
+        let blows = impacts.iter_mut().map(|impact| &mut impact.blow);
+        solve(blows, &mut changes, &motion.inverse_masses);
+        impacts.retain(|impact| impact.blow.impulse != Vector3::zeros());
         if impacts.is_empty() {
             break;
         }
@@ -73,11 +69,14 @@ pub(super) fn strike(
         for impact in &impacts {
             impact.apply(&changes, h, motion);
             if let Some(Joined { joints, .. }) = joined {
-                impact.note(&changes, joints);
+                impact.blow.note(&changes, joints);
             }
             guarded.impulses += 1;
-            guarded.impulse += impact.impulse.norm();
-            let struck: Vec<_> = parties(surface, motion, &impact.candidate).collect();
+            guarded.impulse += impact.blow.impulse.norm();
+            let passed = impact.blow.contact.responses();
+            let passed = passed.iter().flat_map(Response::points);
+            let struck = parties(surface, motion, &impact.candidate).chain(passed);
+            let struck: Vec<_> = struck.collect();
             for i in struck {
                 moved[i as usize] = true;
                 motion.flight.since[i as usize] = 1.0 - impact.left / h;
@@ -96,19 +95,6 @@ pub(super) fn strike(
         motion.cover(surface, candidates);
     }
     changed
-}
-
-/// Finds the impulses of all impacts of one time, and the changes of velocities.
-fn solve(impacts: &mut [Impact], changes: &mut Field, inverse_masses: &[f64]) {
-    for _ in 0..MAX_SWEEPS {
-        let mut solved = true;
-        for impact in &mut *impacts {
-            solved &= impact.press(changes, inverse_masses);
-        }
-        if solved {
-            break;
-        }
-    }
 }
 
 /// Returns the movable parts of a pair: particles, and the centres of rigid bodies.

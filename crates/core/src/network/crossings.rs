@@ -6,8 +6,9 @@ use std::fmt;
 
 use super::elements::Element;
 use super::parts::Network;
+use crate::columns::row;
 use crate::contact;
-use crate::contact::{ContactLayer, Crossed, Freedom, is_crowded};
+use crate::contact::{ContactLayer, Crossed, Freedom, Obstacle, Shape, is_crowded};
 use crate::coupling::{AxialCoupling, BlockCoupling, Coupling, GeneralCoupling};
 use crate::elements::force::Matter;
 use crate::error::{Error, Vertex};
@@ -23,7 +24,7 @@ pub(super) fn check_apart(network: &Network, t: f64, x: &[f64]) -> Result<(), Er
     }
     let crossed = network.crossed(t, x);
     if crossed.is_empty() {
-        return Ok(());
+        return check_single(network, t, x);
     }
     let description = Description {
         network,
@@ -31,6 +32,32 @@ pub(super) fn check_apart(network: &Network, t: f64, x: &[f64]) -> Result<(), Er
         crossed: &crossed,
     };
     Err(Error::Invalid(description.to_string()))
+}
+
+/// Checks that no free particle without edges and triangles is inside a box or a mesh, or on it: no
+/// edge of it crosses them.
+fn check_single(network: &Network, t: f64, x: &[f64]) -> Result<(), Error> {
+    let (Some(layer), Some(touch)) = (network.contact_layer(), network.touch()) else {
+        return Ok(());
+    };
+    let points = touch.edges.iter().filter(|[a, b]| a == b);
+    let free =
+        points.filter(|[i, _]| layer.surface().is_single(*i) && !network.is_pinned(*i as usize));
+    let n = network.particles();
+    for [i, _] in free {
+        let place = row(x, n, *i as usize);
+        let is_in = |obstacle: &Obstacle| {
+            let has_faces = matches!(obstacle.shape, Shape::Box { .. } | Shape::Mesh(_));
+            has_faces && obstacle.depth(t, place) >= 0.0
+        };
+        if let Some(k) = network.obstacles().iter().position(is_in) {
+            let name = Vertex::Obstacle(k);
+            return Err(Error::Invalid(format!(
+                "particle {i} is in {name} or on it"
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Checks that there are not too many pairs at the same place to list them.

@@ -10,10 +10,10 @@ use super::elements::Element;
 use super::parts::Network;
 use super::surfaces::Prescribed;
 use crate::constraints::Turning;
-use crate::contact::Obstacle;
+use crate::contact::{ContactLayer, Obstacle};
 use crate::elements::force::{At, DriftForces};
 use crate::elements::sheet::{Advance, LAWS, SPRING_FORCES, begin};
-use crate::elements::{Finish, Flow, Sheet, flow_each};
+use crate::elements::{Finish, Flow, Gravity, Sheet, flow_each};
 use crate::energy::Energy;
 use crate::path::Path;
 use crate::random::SplitMix;
@@ -369,4 +369,18 @@ pub(crate) fn is_conservative(network: &Network) -> bool {
         && network.obstacles().iter().all(Obstacle::is_still)
         && network.strain_limits().is_empty()
         && !has_motors(network)
+}
+
+/// Returns whether nothing holds a network in the world: its motion is the same to observers with
+/// different uniform velocities.
+pub(crate) fn is_loose(network: &Network) -> bool {
+    let is_inner = |element: &Element| {
+        let is_uniform = element.get::<Gravity>().is_some();
+        is_uniform || element.get::<ContactLayer>().is_some() || element.force().matter().is_some()
+    };
+    let mut constraints = network.constraints().iter();
+    network.elements().iter().all(is_inner)
+        && network.pins().next().is_none()
+        && network.obstacles().is_empty()
+        && constraints.all(|constraint| constraint.ends().1.is_some())
 }

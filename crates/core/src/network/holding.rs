@@ -144,7 +144,7 @@ const JITTER: f64 = 1e-2;
 const LOOK_AHEAD: f64 = 0.1;
 
 /// Returns whether there are joints.
-pub(crate) fn has_joints(network: &Network) -> bool {
+pub(super) fn has_joints(network: &Network) -> bool {
     let mut all = network.constraints().iter();
     all.any(|constraint| matches!(constraint, Constraint::Joint(_)))
 }

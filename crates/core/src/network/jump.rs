@@ -4,11 +4,12 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::evaluation::Loads;
+use super::holding::project_velocities;
 use super::parts::Network;
 use super::{evaluation, rigid};
 use crate::columns::{row, set_row};
 use crate::constraints;
-use crate::constraints::{Constraint, Moved, OneSided, Struck, beyond};
+use crate::constraints::{Constraint, Constraints, Moved, OneSided, Pushed, Struck, beyond};
 use crate::contact::{rebound_speed, shortest_rebound};
 use crate::rows::Terms;
 use crate::system::ParticleSystem;
@@ -126,6 +127,22 @@ impl Jump {
     }
 }
 
+/// Changes the velocities in the state y, which an impulse alone has given, by what the constraints
+/// pass on of it: a taut rope does nothing if it would have to push.
+pub(crate) fn pass_on(network: &Network, y: &mut [f64]) {
+    if !has_ropes(network) {
+        return project_velocities(network, y);
+    }
+    let pushed = pushed(network, &mut network.constraints.clone(), y, &[]);
+    add(network, &pushed, y);
+    network.bodies.settle(y);
+}
+
+/// Returns whether constraints hold a particle, or the body whose centre it is.
+pub(crate) fn is_held(network: &Network, i: usize) -> bool {
+    network.constraints.moves(i)
+}
+
 /// Applies a jump at time t (s), in which ropes tighten, to the state y. `before` are the
 /// velocities (m/s) before it, n x 3.
 fn strike(
@@ -134,18 +151,9 @@ fn strike(
     y: &mut [f64],
     struck: &[Struck],
 ) -> Jump {
-    let (n, still) = (network.particles(), vec![0.0; 3 * network.particles()]);
-    let begun = y.to_vec();
-    let (x, v) = network.halves(&begun);
+    let n = network.particles();
     let mut all = std::mem::take(&mut network.constraints);
-    let weight = |i: usize| network.particles.inverse_masses()[i];
-    let loads = Loads {
-        x,
-        f: &still,
-        torques: &vec![0.0; 3 * network.bodies().len()],
-    };
-    let turning = |k: usize| evaluation::turning(network, k, &begun, Terms::KickForces, loads).0;
-    let pushed = constraints::jump(&mut all, struck, weight, turning, [x, v]);
+    let pushed = pushed(network, &mut all, y, struck);
     network.constraints = all;
     let mut jump = Jump {
         tightened: !struck.is_empty(),
@@ -157,21 +165,46 @@ fn strike(
             Moved::Nothing | Moved::Particle(_) => pushed.change.norm(),
         });
     }
-    let fastest = begun[3 * n..6 * n]
-        .iter()
-        .fold(0.0, |most: f64, v| most.max(v.abs()));
+    let v = &y[3 * n..6 * n];
+    let fastest = v.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
     if struck.is_empty() && jump.change <= MAX_DRIFT * fastest {
         return Jump {
             change: 0.0,
             ..jump
         };
     }
+    for pushed in &pushed {
+        if let Moved::Particle(i) = pushed.moved
+            && network.particles.inverse_masses()[i] == 0.0
+        {
+            jump.work -= 0.5 * pushed.impulse.dot(&(row(before, n, i) + row(v, n, i)));
+        }
+    }
+    add(network, &pushed, y);
+    network.hold(t, y);
+    jump
+}
+
+/// Returns the effects of the impulses of constraints on the velocities in the state y, where these
+/// ropes tighten.
+fn pushed(network: &Network, all: &mut Constraints, y: &[f64], struck: &[Struck]) -> Vec<Pushed> {
+    let (x, v) = network.halves(y);
+    let weight = |i: usize| network.particles.inverse_masses()[i];
+    let loads = Loads {
+        x,
+        f: &vec![0.0; x.len()],
+        torques: &vec![0.0; 3 * network.bodies().len()],
+    };
+    let turning = |k: usize| evaluation::turning(network, k, y, Terms::KickForces, loads).0;
+    constraints::jump(all, struck, weight, turning, [x, v])
+}
+
+/// Adds these effects to the velocities in the state y.
+fn add(network: &Network, pushed: &[Pushed], y: &mut [f64]) {
+    let n = network.particles();
     for pushed in pushed {
         match pushed.moved {
             Moved::Nothing => {}
-            Moved::Particle(i) if weight(i) == 0.0 => {
-                jump.work -= 0.5 * pushed.impulse.dot(&(row(before, n, i) + row(v, n, i)));
-            }
             Moved::Particle(i) => {
                 let v = &mut y[3 * n..6 * n];
                 let changed = row(v, n, i) + pushed.change;
@@ -188,8 +221,6 @@ fn strike(
             }
         }
     }
-    network.hold(t, y);
-    jump
 }
 
 /// Returns the acceleration (m/s2) at which the ends of a slack rope part, or a joint passes its

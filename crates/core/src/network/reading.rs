@@ -322,6 +322,11 @@ impl Network {
         self.surfaces.obstacles()
     }
 
+    /// Returns the obstacles as single particles meet them.
+    pub(crate) fn solids(&self) -> &[Obstacle] {
+        self.surfaces.solids()
+    }
+
     /// Checks that obstacle k exists.
     ///
     /// # Errors

@@ -1,10 +1,12 @@
 //! Surfaces of a network: triangles, obstacles, and their contact properties; and contact as a
 //! force: primitives nearer than their thickness repel each other.
 
+use std::sync::OnceLock;
+
 use super::particles::Particles;
 use super::tearing::Tears;
 use crate::constraints::Constraint;
-use crate::contact::{ContactLayer, Obstacle, Shape, Skin, Surface};
+use crate::contact::{ContactLayer, Obstacle, Shape, Skin, Surface, reaching_on};
 use crate::coupling::{Coupling, RankOneCoupling};
 use crate::elements::Wind;
 use crate::elements::force::{At, Force};
@@ -17,6 +19,9 @@ use crate::rigid::Body;
 
 /// Rigid bodies, with the constraints that may join them.
 type Jointed<'a> = (&'a [Body], &'a [Constraint]);
+
+/// Largest number of obstacles whose solids are found whenever one is added.
+const MAX_EAGER: usize = 32;
 
 /// Contact properties of a network: skins, loose edges, drops, and self-contact.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +43,8 @@ pub(super) struct Surfaces {
     pub triangles: Triangles,
     touch: Option<Touch>,
     obstacles: Vec<Obstacle>,
+    /// The obstacles as single particles meet them, if that differs.
+    solids: OnceLock<Option<Vec<Obstacle>>>,
 }
 
 impl Surfaces {
@@ -47,6 +54,20 @@ impl Surfaces {
 
     pub fn obstacles(&self) -> &[Obstacle] {
         &self.obstacles
+    }
+
+    /// Returns the obstacles as single particles meet them.
+    pub fn solids(&self) -> &[Obstacle] {
+        let solids = self.solids.get_or_init(|| reaching_on(&self.obstacles));
+        solids.as_ref().unwrap_or(&self.obstacles)
+    }
+
+    /// Finds the solids again: at once if there are few, because steps should allocate nothing.
+    fn renew_solids(&mut self) {
+        self.solids.take();
+        if self.obstacles.len() <= MAX_EAGER {
+            self.solids();
+        }
     }
 
     pub fn set_touch(&mut self, touch: Option<Touch>, particles: &Particles) -> Result<(), Error> {
@@ -69,17 +90,21 @@ impl Surfaces {
     pub fn add_obstacle(&mut self, obstacle: Obstacle) -> Result<(), Error> {
         obstacle.check()?;
         self.obstacles.push(obstacle);
+        self.renew_solids();
         Ok(())
     }
 
     pub fn remove_obstacle(&mut self, k: usize) -> Result<Obstacle, Error> {
         self.check_obstacle(k)?;
-        Ok(self.obstacles.remove(k))
+        let removed = self.obstacles.remove(k);
+        self.renew_solids();
+        Ok(removed)
     }
 
     pub fn lead_obstacle(&mut self, k: usize, path: Path) -> Result<&Obstacle, Error> {
         self.check_obstacle(k)?;
         self.obstacles[k].path = path;
+        self.renew_solids();
         Ok(&self.obstacles[k])
     }
 
@@ -87,6 +112,7 @@ impl Surfaces {
         self.check_obstacle(k)?;
         shape.check()?;
         self.obstacles[k].shape = shape;
+        self.renew_solids();
         Ok(())
     }
 

@@ -58,6 +58,8 @@ struct Stretching {
 #[derive(Default)]
 pub(super) struct Events {
     pairs: Vec<Pair>,
+    /// Particles that lie on faces, where, and the normals there.
+    faces: Vec<(usize, Vector3<f64>, Vector3<f64>)>,
     springs: Vec<Stretching>,
     pieces: [Vec<f64>; 2],
     /// State at the last event that was found.
@@ -67,11 +69,10 @@ pub(super) struct Events {
 impl Events {
     /// Creates a search with room for all particles and obstacles of a model.
     pub fn new(model: &Model) -> Self {
-        let obstacles = model
-            .network()
-            .map_or(0, |network| network.obstacles().len());
+        let obstacles = model.network().map_or(0, |network| network.solids().len());
         Self {
             pairs: Vec::with_capacity(model.particles() * obstacles),
+            faces: Vec::with_capacity(model.particles() * obstacles),
             ..Self::default()
         }
     }
@@ -79,6 +80,7 @@ impl Events {
     /// Finds the first event of a step, and the state there.
     pub fn first(&mut self, step: &Searched, state_at: StateAt) -> Option<Event> {
         self.list_pairs(step);
+        self.leave_out_level(step);
         self.list_springs(step);
         if self.pairs.is_empty() && self.springs.is_empty() {
             return None;
@@ -108,6 +110,7 @@ impl Events {
             springs,
             pieces,
             state,
+            ..
         } = self;
         let n = step.network.particles();
         let begin = piece as f64 / PIECES as f64;
@@ -128,8 +131,12 @@ impl Events {
                 let deepest = step
                     .depths
                     .deepest
-                    .min(0.25 * obstacle.shape.greatest_depth());
-                let sunk = approach.first(0.0, deepest).filter(|_| deepest > 0.0);
+                    .min(match obstacle.shape.greatest_depth() {
+                        // It is unknown.
+                        0.0 => f64::INFINITY,
+                        depth => 0.25 * depth,
+                    });
+                let sunk = approach.first(0.0, deepest);
                 if let Some(share) = sunk {
                     let share = begin + share / PIECES as f64;
                     keep_first(&mut first, share, EventKind::Sunk);
@@ -204,7 +211,7 @@ impl Events {
     fn list_pairs(&mut self, step: &Searched) {
         self.pairs.clear();
         let network = step.network;
-        let obstacles = network.obstacles().len();
+        let obstacles = network.solids().len();
         let free = |i: &usize| network.inverse_masses()[*i] > 0.0;
         if network.contact_layer().is_none() {
             for body in 0..obstacles {
@@ -216,6 +223,32 @@ impl Events {
         for body in obstacles..obstacles + step.outflows.len() {
             self.list_near(step, body, flowing.clone());
         }
+    }
+
+    /// Leaves out obstacles that do not rise above the face on which a particle lies: it passes
+    /// from one to the next where they are level.
+    fn leave_out_level(&mut self, step: &Searched) {
+        let n = step.network.particles();
+        let Self { pairs, faces, .. } = self;
+        let lying = pairs.iter().filter(|pair| pair.touches);
+        faces.clear();
+        faces.extend(lying.filter_map(|pair| {
+            let obstacle = Some(step.body(pair.body)).filter(|obstacle| obstacle.is_flat())?;
+            let x = row(step.ends[0], n, pair.particle);
+            Some((pair.particle, x, obstacle.height(x).1))
+        }));
+        if faces.len() == pairs.len() {
+            return;
+        }
+        pairs.retain(|pair| {
+            let obstacle = step.body(pair.body);
+            let is_level = |(particle, x, normal): &(usize, Vector3<f64>, Vector3<f64>)| {
+                *particle == pair.particle
+                    && obstacle.is_still()
+                    && obstacle.rise(x, normal) <= step.depths.none
+            };
+            pair.touches || !faces.iter().any(is_level)
+        });
     }
 
     /// Lists those of some particles that come near an obstacle or an outflow.
@@ -335,7 +368,7 @@ type StateAt<'a> = &'a mut dyn FnMut(f64, &mut [f64]);
 impl Searched<'_> {
     /// Returns the obstacle of that number, or the outflow that follows all obstacles.
     pub fn body(&self, k: usize) -> &Obstacle {
-        let obstacles = self.network.obstacles();
+        let obstacles = self.network.solids();
         let outflow = || &self.outflows[k - obstacles.len()];
         obstacles.get(k).unwrap_or_else(outflow)
     }

@@ -1,20 +1,20 @@
 //! Phases after an integrator's step: springs that are too long are shortened, particles are moved
 //! out of obstacles, surfaces are kept from passing through one another, and pins are put in their
-//! places. Where joints hold bodies that meet something, they change the impulses, and the energy
-//! of such a step.
+//! places. Where constraints hold what meets something, they change the impulses, and the energy of
+//! such a step.
 
 use std::cell::Cell;
 
 use super::depths::Depths;
 use crate::columns::row;
-use crate::constraints::{Constraint, Joint};
+use crate::constraints::Constraint;
 use crate::contact::{
     Bodies, ContactPhase, Course, Impulses, Joints, Pinched, Statistics, Step, StrainLimiter,
     Strained, bulge, earliest, guard, resolve,
 };
 use crate::error::Cause;
 use crate::interval::Interval;
-use crate::network::{Network, has_joints, has_ropes, outflows, project, project_velocities};
+use crate::network::{Network, has_ropes, is_held, outflows, pass_on, project, project_velocities};
 use crate::rigid::ROTATION;
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem};
@@ -75,7 +75,7 @@ impl Phases {
         if limit.is_some() || changes || network.contact_layer().is_some() {
             self.contact.remember(y0);
         } else {
-            self.contact.begin(network.obstacles(), y0, retry);
+            self.contact.begin(network.solids(), y0, retry);
         }
     }
 
@@ -99,14 +99,10 @@ impl Phases {
     /// ends at time t (s), with `times` = (t, h). Rebounds that the depths leave out do not begin.
     pub fn strike(&mut self, network: &Network, times: (f64, f64), depths: Depths, y: &mut [f64]) {
         let left_out = |restitution, place| depths.left_out(restitution, place);
-        let (obstacles, inverse_masses) = (network.obstacles(), network.inverse_masses());
-        self.contact.strike(
-            obstacles,
-            inverse_masses,
-            times,
-            (depths.none, &left_out),
-            y,
-        );
+        let joints = JointsOf::new(network, self.may_lag);
+        let (obstacles, bodies) = (network.solids(), joints.bodies(false));
+        let least = (depths.none, &left_out as &dyn Fn(f64, _) -> f64);
+        self.contact.strike(obstacles, bodies, times, least, y);
     }
 
     /// Settles y1, the end of a step of h (s) from time t (s).
@@ -151,7 +147,7 @@ impl Phases {
             let joints = JointsOf::new(network, self.may_lag);
             let _ = guard(layer, joints.bodies(false), Interval { t, h }, y0, y, none);
         } else if !knows_obstacles {
-            resolve(network.obstacles(), inverse_masses, &Step { t, h, y0 }, y);
+            resolve(network.solids(), inverse_masses, &Step { t, h, y0 }, y);
         }
         network.hold(t + h, y);
         if network.is_constrained() && network.can_touch() {
@@ -190,7 +186,7 @@ impl Phases {
     ) -> Result<Statistics, Cause> {
         let joints = JointsOf::new(network, self.may_lag);
         let touches = network.contact_layer().is_some();
-        let takes_turns = network.is_constrained() && (touches || !network.obstacles().is_empty());
+        let takes_turns = network.is_constrained() && (touches || !network.solids().is_empty());
         if touches || takes_turns {
             network.hold(times.t + times.h, y1);
         }
@@ -229,11 +225,10 @@ impl Phases {
     ) -> Result<Statistics, Cause> {
         let network = joints.network();
         let Some(layer) = network.contact_layer() else {
-            let obstacles = network.obstacles();
-            let inverse_masses = network.inverse_masses();
+            let (obstacles, bodies) = (network.solids(), joints.bodies(are_struck));
             let met = self
                 .contact
-                .resolve(obstacles, inverse_masses, Interval { t, h }, y1);
+                .resolve(obstacles, bodies, Interval { t, h }, y1);
             network.hold(t + h, y1);
             return Ok(met);
         };
@@ -304,7 +299,7 @@ const MAX_SHARE: f64 = 0.05;
 /// Share of a sum of impulses that is a rounding error.
 const ROUNDING: f64 = 1e-12;
 
-/// Joints of the rigid bodies of a network.
+/// Constraints of a network.
 struct JointsOf<'a> {
     network: &'a Network,
     may_lag: bool,
@@ -329,7 +324,7 @@ impl<'a> JointsOf<'a> {
     pub fn bodies(&self, are_struck: bool) -> Bodies<'_> {
         Bodies {
             inverse_masses: self.network.inverse_masses(),
-            joints: has_joints(self.network).then_some(self),
+            joints: self.network.is_constrained().then_some(self),
             are_struck,
             may_lag: self.may_lag,
         }
@@ -367,25 +362,16 @@ impl<'a> JointsOf<'a> {
 }
 
 impl Joints for JointsOf<'_> {
-    fn hold(&self, center: usize) -> bool {
-        joints(self.network).any(|joint| joint.first == center || joint.second == Some(center))
+    fn hold(&self, i: usize) -> bool {
+        is_held(self.network, i)
     }
 
     fn fit(&self, y: &mut [f64]) {
-        project_velocities(self.network, y);
+        pass_on(self.network, y);
     }
 
     fn note(&self, impulse: f64, work: f64) {
         let [impulses, works] = self.noted.get();
         self.noted.set([impulses + impulse, works + work]);
     }
-}
-
-/// Returns the joints of a network.
-fn joints(network: &Network) -> impl Iterator<Item = &Joint> {
-    let all = network.constraints().iter();
-    all.filter_map(|constraint| match constraint {
-        Constraint::Joint(joint) => Some(joint),
-        _ => None,
-    })
 }

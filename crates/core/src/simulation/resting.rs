@@ -94,28 +94,13 @@ pub(super) struct Resting<'a> {
     rests: &'a [Rest],
 }
 
-/// Returns whether an obstacle's reaction is known at each stage: it is flat and does not move.
-fn is_flat(obstacle: &Obstacle) -> bool {
-    obstacle.is_still() && matches!(obstacle.shape, Shape::Floor | Shape::Box { .. })
-}
-
 /// Returns whether particles of a network may rest in this sense. In a network with constraints,
 /// bodies or surfaces, their forces would have to be solved together with the reactions.
 pub(crate) fn may_rest(network: &Network) -> bool {
-    network.obstacles().iter().any(is_flat)
+    network.solids().iter().any(Obstacle::is_flat)
         && network.contact_layer().is_none()
         && network.bodies().is_empty()
         && !network.is_constrained()
-}
-
-/// Returns the height (m) of a point above a flat obstacle that does not move, and the normal
-/// there.
-fn height(obstacle: &Obstacle, x: Vector3<f64>) -> (f64, Vector3<f64>) {
-    let pose = obstacle.at(0.0);
-    let seen = obstacle
-        .shape
-        .separation(pose.inwards(x - pose.place.position));
-    (seen.distance, pose.outwards(seen.normal))
 }
 
 impl Rests {
@@ -124,7 +109,7 @@ impl Rests {
         let Some(network) = model.network().filter(|network| may_rest(network)) else {
             return Self::default();
         };
-        let flat = network.obstacles().iter().filter(|o| is_flat(o)).count();
+        let flat = network.solids().iter().filter(|o| o.is_flat()).count();
         let most = flat * network.particles();
         Self {
             now: Vec::with_capacity(most),
@@ -155,12 +140,12 @@ impl Rests {
     /// counts as stopped. Returns the number of evaluations.
     pub fn list(&mut self, network: &Network, t: f64, y: &mut [f64], depths: Depths) -> u64 {
         let n = network.particles();
-        for (k, obstacle) in network.obstacles().iter().enumerate() {
-            if !is_flat(obstacle) {
+        for (k, obstacle) in network.solids().iter().enumerate() {
+            if !obstacle.is_flat() {
                 continue;
             }
             for particle in (0..n).filter(|i| !network.is_pinned(*i)) {
-                let (distance, normal) = height(obstacle, row(y, n, particle));
+                let (distance, normal) = obstacle.height(row(y, n, particle));
                 if distance.abs() <= depths.none {
                     self.now.push(Rest {
                         particle,
@@ -183,11 +168,11 @@ impl Rests {
         self.now.retain_mut(|rest| {
             let (free, speed) = (row(a, n, rest.particle), row(v, n, rest.particle));
             let press = -free.dot(&rest.normal);
-            let obstacle = &network.obstacles()[rest.obstacle];
+            let obstacle = &network.solids()[rest.obstacle];
             let most = obstacle.friction * press;
             let leaving = speed.dot(&rest.normal);
             let place = row(x, n, rest.particle);
-            let begun = height(obstacle, place).0.max(0.0);
+            let begun = obstacle.height(place).0.max(0.0);
             let highest = begun + 0.5 * leaving * leaving / press;
             if press <= 0.0 || highest > depths.left_out(obstacle.restitution, place) {
                 return false;
@@ -297,8 +282,8 @@ impl Rest {
     /// where it ceases.
     fn margin(&self, network: &Network, y: &[f64], free: &[f64], none: f64) -> f64 {
         let (n, i) = (network.particles(), self.particle);
-        let obstacle = &network.obstacles()[self.obstacle];
-        if height(obstacle, row(y, n, i)).0 > none {
+        let obstacle = &network.solids()[self.obstacle];
+        if obstacle.height(row(y, n, i)).0.abs() > none {
             return -1.0;
         }
         let free = row(&free[3 * n..6 * n], n, i);
@@ -358,7 +343,7 @@ impl ParticleSystem for Resting<'_> {
         let n = self.network.particles();
         let (v, a) = (self.network.halves(y).1, &mut dydt[3 * n..6 * n]);
         for rest in self.rests {
-            let (obstacle, i) = (&self.network.obstacles()[rest.obstacle], rest.particle);
+            let (obstacle, i) = (&self.network.solids()[rest.obstacle], rest.particle);
             let held = rest.held(obstacle, row(v, n, i), row(a, n, i));
             set_row(a, n, i, held);
         }
@@ -456,7 +441,7 @@ impl Locator {
     ) -> Option<Event> {
         let network = model.network()?;
         let has_ropes = has_ropes(network);
-        let is_none = network.obstacles().is_empty() && self.outflows.is_empty();
+        let is_none = network.solids().is_empty() && self.outflows.is_empty();
         if is_none && network.tear_limit().is_none() && !has_ropes {
             return None;
         }
