@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::power::energy_of;
 use crate::error::{Cause, Unmet};
-use crate::network::{Network, is_nearly_singular};
+use crate::network::{Network, is_loose, is_nearly_singular};
 
 /// Interval of time (s): the energy is checked once in each.
 const INTERVAL: f64 = 0.1;
@@ -81,8 +81,8 @@ pub struct Balance {
     floor: f64,
     /// Least energy that gains are compared with.
     least: f64,
-    /// Kinetic energy at checks, from 0 on; elastic energy, and that of repulsion; gravitational
-    /// energy.
+    /// Kinetic energy at checks, from 0 on, without the motion that all share if nothing holds
+    /// them; elastic energy, and that of repulsion; gravitational energy.
     kinetic: Range,
     elastic: Range,
     gravitational: Range,
@@ -119,7 +119,9 @@ impl Balance {
             gravitational: Range::at(energy.gravitational),
             ..Self::default()
         };
-        balance.kinetic.add(energy.kinetic);
+        balance
+            .kinetic
+            .add(energy.kinetic - adrift(network, network.halves(y).1));
         balance
     }
 
@@ -230,7 +232,8 @@ impl Balance {
             let terms = network.masses().iter().zip(v).map(|(m, v)| m * v * v);
             terms.sum::<f64>()
         };
-        0.5 * (0..3).map(squared).sum::<f64>() > MAX_GAIN * self.stake()
+        let kinetic = 0.5 * (0..3).map(squared).sum::<f64>();
+        kinetic - adrift(network, v) > MAX_GAIN * self.stake()
     }
 
     /// Checks the energy of y at time t (s), with scratch for forces. Returns the cause of a
@@ -242,13 +245,13 @@ impl Balance {
         f: &mut Vec<f64>,
     ) -> Option<Cause> {
         let energy = energy_of(network, t, y);
-        self.kinetic.add(energy.kinetic);
+        let (x, v) = network.halves(y);
+        self.kinetic.add(energy.kinetic - adrift(network, v));
         self.elastic.add(energy.elastic + energy.contact);
         self.gravitational.add(energy.gravitational);
         self.gain = energy.total() - self.begin - self.work;
         self.most = self.most.max(self.gain);
         self.time = t;
-        let (x, v) = network.halves(y);
         self.singular |= is_nearly_singular(network, t, x, v, f);
         (self.gain > MAX_GAIN * self.stake()).then(|| {
             let (particle, speed) = fastest_particle(v);
@@ -291,6 +294,21 @@ impl Balance {
     pub(super) fn was_singular(&self) -> bool {
         self.singular
     }
+}
+
+/// Returns the kinetic energy (J) of the motion that all share at the velocities v (m/s), n x 3, if
+/// nothing holds the network in the world: an observer who moves along sees none of it.
+fn adrift(network: &Network, v: &[f64]) -> f64 {
+    if !is_loose(network) {
+        return 0.0;
+    }
+    let masses = network.masses();
+    let momentum = |axis: usize| {
+        let v = &v[axis * masses.len()..];
+        masses.iter().zip(v).map(|(m, v)| m * v).sum::<f64>()
+    };
+    let squared: f64 = (0..3).map(|axis| momentum(axis).powi(2)).sum();
+    0.5 * squared / masses.iter().sum::<f64>()
 }
 
 /// Returns the rounding error (J) of the energy of y at time t (s): its largest change if all

@@ -15,7 +15,7 @@ use crate::contact::Obstacle;
 use crate::elements::force::{Force, Matter};
 use crate::energy::Energy;
 use crate::error::Error;
-use crate::network::{Network, add_wind, has_motors};
+use crate::network::{Network, add_wind, has_motors, next_known_time};
 use crate::path::Path;
 use crate::spring::Spring;
 use crate::system::{Mechanics, ParticleSystem};
@@ -366,9 +366,16 @@ impl TotalWork {
             f: vec![],
             scratch: [(); 3].map(|()| vec![0.0; y.len()]),
         };
-        all.power = all.power_at(network, (t, LEAST_MOMENT), y);
-        all.f.clone_from(&all.scratch[1]);
+        all.begin(network, (t, LEAST_MOMENT), y);
         all
+    }
+
+    /// Evaluates the power at the beginning of a step from y at time t (s): just after a velocity
+    /// jumps, if it does.
+    fn begin(&mut self, network: &Network, (t, moment): (f64, f64), y: &[f64]) {
+        let side = beside_jump(network, t, moment);
+        self.power = self.power_at(network, (t + side, moment), y);
+        self.f.clone_from(&self.scratch[1]);
     }
 
     fn work(&mut self, network: &Network, end: End) -> f64 {
@@ -376,7 +383,8 @@ impl TotalWork {
         let few = network.particles() <= MAX_PARTICLES_PER_STEP;
         let before = self.power;
         let moment = (MOMENT_SHARE * h).max(LEAST_MOMENT);
-        let after = self.power_at(network, (end.t, moment), end.y);
+        let side = beside_jump(network, end.t, moment);
+        let after = self.power_at(network, (end.t - side, moment), end.y);
         // Now f is at the end, and the scratch has that at the beginning.
         std::mem::swap(&mut self.f, &mut self.scratch[1]);
         let mut mean = 0.5 * (before + after);
@@ -397,6 +405,9 @@ impl TotalWork {
         }
         (self.t, self.power) = (end.t, after);
         self.y.copy_from_slice(end.y);
+        if side > 0.0 {
+            self.begin(network, (end.t, moment), end.y);
+        }
         mean * h
     }
 
@@ -412,6 +423,15 @@ impl TotalWork {
         };
         (at(moment) - at(-moment)) / (2.0 * moment)
     }
+}
+
+/// Returns the time (s) by which the power is evaluated before or after a time t (s) at which a
+/// prescribed velocity may jump, so that its difference over two moments (s) lies on one side of
+/// the jump; 0 without one.
+fn beside_jump(network: &Network, t: f64, moment: f64) -> f64 {
+    let side = 1.5 * moment;
+    let jumps = next_known_time(network, t - side) <= t + side;
+    if jumps { side } else { 0.0 }
 }
 
 /// Writes the state [x | v] in the middle of a step of h (s) from y0 to y1, by the Hermite

@@ -224,8 +224,11 @@ impl Watch {
         }
         let End { t, y, .. } = end;
         let is_due = balance.is_due(t) || away;
-        let mut work = self.power.work(network, end, is_due);
         let impulse = met.impulse.max(met.guarded.impulse);
+        // Between velocities before and after an impact, constraints would not be met.
+        let is_smooth = impulse == 0.0 || !network.is_constrained();
+        let order = if is_smooth { end.order } else { 1 };
+        let mut work = self.power.work(network, End { order, ..end }, is_due);
         if impulse > 0.0 {
             // Upper bound of the work of obstacles.
             let speed = |obstacle: &Obstacle| fastest(obstacle, t, self.radius);
