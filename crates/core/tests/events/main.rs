@@ -13,6 +13,7 @@ mod rebounds;
 mod releases;
 mod resting;
 mod ropes;
+mod seams;
 mod tears;
 mod thin;
 mod touches;

@@ -295,3 +295,54 @@ fn rounding_errors_are_no_work() {
         assert_eq!(run.gained(), None, "at {} s", run.time());
     }
 }
+
+/// What a method gains is compared with the same energy, whatever the observer's velocity is.
+#[test]
+fn gains_are_the_same_to_all_observers() {
+    let shares = [0.0, 1.0, 10.0].map(|speed: f64| {
+        let text = format!(
+            "[particles]
+            positions = [[0, 0, 0], [1.1, 0, 0]]
+            velocities = [[{speed}, 0, 0], [{speed}, 0, 0]]
+            mass = 1
+            springs = [[0, 1, 100, 1, 0]]"
+        );
+        let method = method("euler");
+        let mut run = Simulation::new(described(&text), method, Control::Step(1e-3)).unwrap();
+        run.advance_to(3.0).unwrap();
+        run.gained().unwrap().share
+    });
+    for share in shares {
+        assert!((share - shares[0]).abs() < 1e-6, "{shares:?}");
+    }
+}
+
+/// A ball lies on a box that begins to move at once, upwards or downwards: no energy comes from
+/// nowhere.
+#[test]
+fn a_ball_on_a_box_that_jumps_gains_nothing() {
+    for by in [0.6, -0.6] {
+        let text = format!(
+            "gravity = [0, -9.81, 0]
+            [[box]]
+            center = [0, -0.1, 0]
+            size = [4, 0.2, 4]
+            restitution = 0.5
+            shift = {{ by = [0, {by}, 0], start = 0.3, end = 0.6 }}
+            [[body]]
+            parts = [{{ ball = 0.1 }}]
+            mass = 1
+            at = [0, 0.1019, 0]"
+        );
+        for (name, control) in [
+            ("rk4", Control::Step(5e-4)),
+            ("dopri5", Control::Tolerance(1e-6)),
+            ("dop853", Control::Tolerance(1e-8)),
+        ] {
+            let mut run = Simulation::new(described(&text), method(name), control).unwrap();
+            let end = run.advance_to(1.0);
+            end.unwrap_or_else(|why| panic!("{name}, {by} m: {why}"));
+            assert_eq!(run.gained(), None, "{name}, {by} m");
+        }
+    }
+}

@@ -374,3 +374,36 @@ fn balls_on_hinges_are_a_cradle() {
         assert!(gained.abs() < 0.01, "{name}: {gained}");
     }
 }
+
+/// Boxes thrown at a rough floor with restitution 1, in which friction reverses slips: no impact
+/// gives energy (Kane, *A dynamics puzzle*, 1984).
+#[test]
+fn friction_with_restitution_gains_no_energy() {
+    for seed in 0..12 {
+        let mut random = Random(seed);
+        let [turn, v, spin] = [2.0, 1.0, 8.0].map(|size| <[f64; 3]>::from(random.vector() * size));
+        let text = format!(
+            "gravity = [0, -{G}, 0]
+            floor = {{ height = 0, friction = 0.5, restitution = 1 }}
+            [[body]]
+            parts = [{{ box = [0.5, 0.1, 0.12] }}]
+            mass = 1
+            at = [0, 0.8, 0]
+            rotation = {turn:?}
+            velocity = {v:?}
+            spin = {spin:?}"
+        );
+        for (name, step) in [("rk4", 1e-3), ("verlet", 2.5e-4)] {
+            let mut run = run(&text, name, Control::Step(step));
+            let begun = run.energy().unwrap().total();
+            for k in 1..=50 {
+                run.advance_to(0.02 * f64::from(k)).unwrap();
+                let gained = run.energy().unwrap().total() - begun;
+                assert!(
+                    gained < 2e-3 * begun,
+                    "{seed} by {name}: {gained} of {begun} J"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! Impacts of particles that rods and wires hold, against closed forms of the impulses.
+
+use a3_core::{Control, Simulation, Vector3, integrators};
+
+use super::{G, of, vector};
+use crate::common::described;
+
+/// Masses of the ends of a rod (kg), where it begins (m), and its direction.
+const MASSES: [f64; 2] = [1.0, 2.0];
+const HEIGHT: f64 = 0.5;
+const ALONG: Vector3<f64> = Vector3::new(0.36, 0.8, 0.48);
+
+/// Methods with the control by which they run.
+fn all() -> Vec<(&'static str, Control)> {
+    let step = |name| (name, Control::Step(1e-3));
+    let close = |name| (name, Control::Tolerance(1e-9));
+    let fixed = ["rk4", "verlet", "implicit-midpoint"].map(step);
+    let adaptive = ["dopri5", "dop853"].map(close);
+    fixed.into_iter().chain(adaptive).collect()
+}
+
+fn run(scene: &str, (name, control): (&str, Control), t: f64) -> Simulation {
+    let method = integrators::find(name).unwrap();
+    let mut run = Simulation::new(described(scene), method, control).unwrap();
+    run.advance_to(t)
+        .unwrap_or_else(|why| panic!("{name}: {why}"));
+    assert_eq!(run.gained(), None, "{name}");
+    run
+}
+
+/// Velocities (m/s) of both ends of a rod along `ALONG` after the lower one has struck a floor at
+/// the velocity v (m/s): the impulse P at the floor and R along the rod. P grows along the normal
+/// until the end rises as it has to, and along the floor until the end no longer slips or P is on
+/// the cone of friction.
+fn struck(v: Vector3<f64>, restitution: f64, friction: f64) -> [Vector3<f64>; 2] {
+    let [a, b] = MASSES.map(f64::recip);
+    // Friction is along the slip: its components change by one measure.
+    let most = a + b;
+    let own = |p: Vector3<f64>| p * a - ALONG * (ALONG.dot(&p) * a * a / (a + b));
+    let y = Vector3::y();
+    let mut impulse = Vector3::zeros();
+    for _ in 0..10_000 {
+        let after = v + own(impulse);
+        impulse.y += (-restitution * v.y - after.y) / own(y).y;
+        let slip = v + own(impulse);
+        impulse.x -= 0.5 * slip.x / most;
+        impulse.z -= 0.5 * slip.z / most;
+        let rubbed = impulse.x.hypot(impulse.z);
+        if rubbed > friction * impulse.y {
+            impulse.x *= friction * impulse.y / rubbed;
+            impulse.z *= friction * impulse.y / rubbed;
+        }
+    }
+    let passed = ALONG * (ALONG.dot(&impulse) * a * b / (a + b));
+    [v + own(impulse), v + passed]
+}
+
+/// A rod that falls on its lower end.
+fn rod(restitution: f64, friction: f64, body: bool) -> String {
+    let low = if body { HEIGHT + 0.1 } else { HEIGHT };
+    let [x, y, z] = <[f64; 3]>::from(ALONG + vector(0.0, low, 0.0));
+    let (positions, masses, rod, ball) = if body {
+        let ball = format!(
+            "[[body]]
+            parts = [{{ ball = 0.1 }}]
+            mass = 1
+            at = [0, {low}, 0]
+            restitution = {restitution}
+            friction = {friction}"
+        );
+        (format!("[{x}, {y}, {z}]"), "2", "[1, 0]", ball)
+    } else {
+        let both = format!("[0, {low}, 0], [{x}, {y}, {z}]");
+        (both, "1, 2", "[0, 1]", String::new())
+    };
+    format!(
+        "gravity = [0, -{G}, 0]
+        floor = {{ height = 0, restitution = {restitution}, friction = {friction} }}
+        [particles]
+        positions = [{positions}]
+        masses = [{masses}]
+        [[constraint]]
+        rod = {rod}
+        {ball}"
+    )
+}
+
+/// Positions (m) of both ends at a time (s) after an impact at the velocities v (m/s): the middle
+/// of mass flies on a parabola, and the rod turns at one rate.
+fn flown(v: [Vector3<f64>; 2], low: Vector3<f64>, t: f64) -> [Vector3<f64>; 2] {
+    let whole = MASSES[0] + MASSES[1];
+    let drop = vector(0.0, -0.5 * G * t * t, 0.0);
+    let speed = (v[0] * MASSES[0] + v[1] * MASSES[1]) / whole;
+    let middle = low + ALONG * (MASSES[1] / whole) + speed * t + drop;
+    let turning = v[1] - v[0];
+    let angle = turning.norm() * t;
+    let turned = ALONG * angle.cos() + turning.normalize() * angle.sin();
+    [
+        middle - turned * (MASSES[1] / whole),
+        middle + turned * (MASSES[0] / whole),
+    ]
+}
+
+#[test]
+fn the_end_of_a_rod_rebounds_with_the_mass_that_the_rod_leaves_it() {
+    let fall = (2.0 * HEIGHT / G).sqrt();
+    for (restitution, friction) in [(1.0, 0.0), (0.6, 0.0), (0.9, 0.1), (0.7, 2.0)] {
+        let after = struck(vector(0.0, -G * fall, 0.0), restitution, friction);
+        let expected = flown(after, Vector3::zeros(), 0.05);
+        for method in all() {
+            let run = run(&rod(restitution, friction, false), method, fall + 0.05);
+            for (i, expected) in expected.into_iter().enumerate() {
+                let off = (of(run.state(), i)[0] - expected).norm();
+                assert!(
+                    off < 2e-5,
+                    "{}, e {restitution}, friction {friction}, end {i}: {off:e} m",
+                    method.0
+                );
+            }
+        }
+    }
+}
+
+/// A ball on a rod falls on a floor, as a particle in its place does.
+#[test]
+fn a_body_on_a_rod_rebounds_like_a_particle() {
+    let fall = (2.0 * HEIGHT / G).sqrt();
+    let after = struck(vector(0.0, -G * fall, 0.0), 1.0, 0.0);
+    for name in ["rk4", "verlet"] {
+        let run = run(
+            &rod(1.0, 0.0, true),
+            (name, Control::Step(2e-4)),
+            fall + 0.02,
+        );
+        let (n, y) = (run.model().particles(), run.state());
+        // The rod turns by as much as it does without gravity.
+        let expected = flown(after, vector(0.0, 0.1, 0.0), 0.02);
+        for (i, expected) in [(1, expected[0]), (0, expected[1])] {
+            let place = vector(y[i], y[n + i], y[2 * n + i]);
+            let off = (place - expected).norm();
+            assert!(off < 2e-4, "{name}, {i}: {off} m");
+        }
+    }
+}
+
+/// A bead on an inclined wire falls on a floor, and goes back up the wire at e times its speed.
+#[test]
+fn a_bead_on_a_wire_rebounds_along_it() {
+    let scene = format!(
+        "gravity = [0, -{G}, 0]
+        floor = {{ height = 0, restitution = 0.6 }}
+        [particles]
+        positions = [[0, 0.6, 0]]
+        mass = 1.5
+        [[constraint]]
+        particle = 0
+        line = {{ point = [0, 0.6, 0], direction = [0.8, -0.6, 0] }}"
+    );
+    let along = 0.6 * G;
+    let fall = (2.0 / along).sqrt();
+    for method in all() {
+        let run = run(&scene, method, fall + 0.1);
+        let [_, v] = of(run.state(), 0);
+        let speed = v.dot(&vector(-0.8, 0.6, 0.0));
+        let expected = 0.6 * along * fall - along * 0.1;
+        assert!((speed - expected).abs() < 1e-4, "{}: {speed}", method.0);
+    }
+}
+
+/// Chains of rods thrown at a rough elastic floor gain no energy.
+#[test]
+fn chains_on_an_elastic_floor_gain_no_energy() {
+    for seed in 0..8_u32 {
+        let number = |k: u32| f64::from((seed * 7919 + k * 104_729) % 1000) / 1000.0;
+        let links = (0..4).map(|k| {
+            let [a, b, c] = [0, 1, 2].map(|axis| number(3 * k + axis) - 0.5);
+            [a, 0.6 + 0.5 * f64::from(k) + 0.3 * b, c]
+        });
+        let positions: Vec<_> = links.collect();
+        let scene = format!(
+            "gravity = [0, -{G}, 0]
+            floor = {{ height = 0, friction = 0.4, restitution = 1 }}
+            [particles]
+            positions = {positions:?}
+            masses = [0.4, 0.6, 1.8, 1.4]
+            [[constraint]]
+            rod = [0, 1]
+            [[constraint]]
+            rod = [1, 2]
+            [[constraint]]
+            rod = [2, 3]"
+        );
+        for (name, control) in [
+            ("rk4", Control::Step(5e-4)),
+            ("verlet", Control::Step(5e-4)),
+            ("dopri5", Control::Tolerance(1e-6)),
+        ] {
+            let mut run = run(&scene, (name, control), 0.0);
+            let begun = run.energy().unwrap().total();
+            for k in 1..=20 {
+                let end = run.advance_to(0.1 * f64::from(k));
+                end.unwrap_or_else(|why| panic!("{seed} by {name}: {why}"));
+                let gained = run.energy().unwrap().total() - begun;
+                assert!(
+                    gained < 0.01 * begun,
+                    "{seed} by {name}: {gained} of {begun} J"
+                );
+            }
+        }
+    }
+}
+
+/// A rope whose ends lie on a floor rebounds as it does without one.
+#[test]
+fn a_rope_on_a_floor_keeps_its_restitution() {
+    for restitution in [0.5, 1.0] {
+        let scene = format!(
+            "gravity = [0, -{G}, 0]
+            floor = 0
+            [particles]
+            positions = [[0, 0, 0], [0.3, 0, 0]]
+            velocities = [[0, 0, 0], [2, 0, 0]]
+            mass = 1
+            [[constraint]]
+            rope = [0, 1]
+            length = 0.51
+            restitution = {restitution}"
+        );
+        for method in all() {
+            let run = run(&scene, method, 0.2);
+            let speeds = [0, 1].map(|i| of(run.state(), i)[1].x);
+            let expected = [1.0 + restitution, 1.0 - restitution];
+            let off = (0..2).map(|i| (speeds[i] - expected[i]).abs());
+            let off = off.fold(0.0, f64::max);
+            assert!(off < 1e-9, "{}: {speeds:?}", method.0);
+        }
+    }
+}
