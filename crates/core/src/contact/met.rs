@@ -430,8 +430,9 @@ impl Met<'_> {
     }
 }
 
-/// Returns where a particle touches on its way between two places (m), the first of which the
-/// obstacle would have carried it to, from the depth that it reaches by an approach (m).
+/// Returns the place (m) at which a particle touches the obstacle on its straight way from
+/// `carried`, its place if the obstacle had carried it along, to `at` (m): it approaches by a
+/// distance (m) along the normal, and ends at a depth (m).
 fn touched([carried, at]: [Vector3<f64>; 2], [depth, approach]: [f64; 2]) -> Vector3<f64> {
     let share = if approach > depth * (1.0 + TOUCHING_SHARE) {
         depth / approach

@@ -296,7 +296,7 @@ fn rounding_errors_are_no_work() {
     }
 }
 
-/// What a method gains is compared with the same energy, whatever the observer's velocity is.
+/// An observer who moves along at any uniform velocity sees the same share of energy gained.
 #[test]
 fn gains_are_the_same_to_all_observers() {
     let shares = [0.0, 1.0, 10.0].map(|speed: f64| {
