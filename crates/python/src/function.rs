@@ -62,8 +62,8 @@ impl Raised {
 pub enum Shape {
     /// A flat array.
     Flat,
-    /// Two flat arrays, one after the other.
-    Pair,
+    /// This number of flat arrays, one after the other.
+    Table(usize),
     /// A square matrix for a flat array.
     Square,
     /// A row of three numbers for each particle, of what a3 has column by column.
@@ -181,7 +181,7 @@ impl Function {
 fn read(result: &Bound<PyAny>, name: &str, shape: Shape, out: &mut [f64]) -> PyResult<()> {
     let expected: &[usize] = match shape {
         Shape::Flat => &[out.len()],
-        Shape::Pair => &[2, out.len() / 2],
+        Shape::Table(rows) => &[rows, out.len() / rows],
         Shape::Square => &[out.len().isqrt(); 2],
         Shape::Rows => &[out.len() / 3, 3],
         Shape::Number => &[],

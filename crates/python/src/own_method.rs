@@ -82,8 +82,8 @@ pub fn add_method(
     register(py, method, raised).map(drop)
 }
 
-/// Registers a method that estimates its errors: `step` returns the state at t + h and the
-/// estimate.
+/// Registers a method that estimates its errors: `step` returns the state at t + h, the estimate,
+/// and the coefficients of a polynomial of this degree within the step; of degree 0, there are none.
 #[pyfunction]
 pub fn add_adaptive(
     py: Python<'_>,
@@ -91,13 +91,16 @@ pub fn add_adaptive(
     step: &Bound<PyAny>,
     order: u32,
     evaluations: u32,
+    degree: usize,
 ) -> PyResult<()> {
-    let raised = Raised::default();
-    let function = Function::new(step, Shape::Pair, &raised)?;
+    let (raised, rows) = (Raised::default(), 2 + degree);
+    let function = Function::new(step, Shape::Table(rows), &raised)?;
     let method = Method::from_estimated_step(name, order, move |f, t, y, h| {
-        let mut next = stepped(&function, f, (t, h), y, 2 * y.len())?;
-        let estimate = next.split_off(y.len());
-        Ok([next, estimate])
+        let found = stepped(&function, f, (t, h), y, rows * y.len())?;
+        Ok(found
+            .chunks_exact(y.len())
+            .map(<[f64]>::to_vec)
+            .collect::<Vec<_>>())
     });
     let method = method.map(|method| method.with_evaluations(evaluations));
     register(py, method, raised).map(drop)
@@ -162,8 +165,9 @@ pub fn add_tableau(
     a: Vec<Vec<f64>>,
     b: Vec<f64>,
     b_hat: Option<Vec<f64>>,
+    within: Vec<Vec<f64>>,
 ) -> PyResult<u32> {
-    let method = Method::from_tableau(name, &a, &b, b_hat.as_deref());
+    let method = Method::from_tableau(name, &a, &b, b_hat.as_deref(), &within);
     Ok(register(py, method, Raised::default())?.order)
 }
 

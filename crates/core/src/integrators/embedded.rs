@@ -34,6 +34,9 @@ pub(super) struct Tableau {
     /// Weights of the polynomial's terms of degree 4 and more; the lower terms follow from both
     /// ends.
     pub(super) dense: &'static [&'static [f64]],
+    /// Weights of the terms of degree 1, 2 and more of another polynomial, which takes the place of
+    /// that one; none if there is no other.
+    pub(super) powers: &'static [&'static [f64]],
 }
 
 /// Largest number of terms of a polynomial.
@@ -216,6 +219,17 @@ impl Trial for EmbeddedPair {
             }
             self.last.dense = true;
             work = Work::of(tableau.extra.len() as u64);
+        }
+        if !tableau.powers.is_empty() {
+            out.copy_from_slice(&self.last.y0);
+            let mut factor = h;
+            for weights in tableau.powers {
+                factor *= theta;
+                blocks(6, out, |start, out| {
+                    add_to_block(start, out, factor, weights, &self.last.k);
+                });
+            }
+            return work;
         }
         // y0 + theta (F0 + (1 - theta) (F1 + theta (F2 + (1 - theta) (F3 + ...)))): the factor of
         // each term.

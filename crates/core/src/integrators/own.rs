@@ -148,7 +148,9 @@ impl Method {
     /// Creates an own method from a function that takes a step and estimates its error, so that
     /// steps are chosen to a tolerance: from the [`Derivative`] f, t (s), y and h (s) it computes
     /// the state at t + h and the estimate, which falls as h to the power of `order`, or faster.
-    /// Between the ends of a step, states are on the cubic through both.
+    /// Between the ends of a step, states are on the cubic through both or, if further vectors `q_1`,
+    /// `q_2`, ... follow, at y + theta `q_1` + theta^2 `q_2` + ... with theta from 0 to 1. Their sum is
+    /// the change of y in the step.
     ///
     /// Heun's method with the difference from Euler's as the estimate:
     ///
@@ -168,14 +170,13 @@ impl Method {
     ///
     /// # Errors
     /// Those of [`from_step`](Self::from_step).
-    pub fn from_estimated_step(
+    pub fn from_estimated_step<R: Into<Vec<Vec<f64>>>>(
         name: impl Into<String>,
         order: u32,
-        step: impl Fn(&mut Derivative, f64, &[f64], f64) -> Result<[Vec<f64>; 2], Error>
-        + Send
-        + Sync
-        + 'static,
+        step: impl Fn(&mut Derivative, f64, &[f64], f64) -> Result<R, Error> + Send + Sync + 'static,
     ) -> Result<Self, Error> {
+        let step =
+            move |f: &mut Derivative, t: f64, y: &[f64], h: f64| step(f, t, y, h).map(R::into);
         let create = Create::OwnTrial(Box::leak(Box::new(step)));
         let method = Self::made(name.into(), order, create)?;
         Ok(Self {
@@ -189,7 +190,8 @@ impl Method {
     /// difference from y1 estimates the error. Such a pair chooses its steps to a tolerance. There
     /// may be one weight more of f at the end of the step. The order follows from the tableau, and
     /// the times of the stages are the sums of their rows. Between the ends of a step, states are
-    /// on the cubic through both.
+    /// on the cubic through both or, if `within` has rows of weights `p_ij`, as many as `estimate` may
+    /// have, at y + h sum `p_ij` theta^j `k_i`, with j from 1 on and theta from 0 to 1.
     ///
     /// The pair of Bogacki and Shampine, of order 3:
     ///
@@ -199,21 +201,27 @@ impl Method {
     /// let a = [vec![], vec![0.5], vec![0.0, 0.75]];
     /// let b = [2.0 / 9.0, 1.0 / 3.0, 4.0 / 9.0];
     /// let other = [7.0 / 24.0, 0.25, 1.0 / 3.0, 0.125];
-    /// let pair = Method::from_tableau("bs23", &a, &b, Some(&other))?;
+    /// let pair = Method::from_tableau("bs23", &a, &b, Some(&other), &[])?;
     /// assert!(pair.order == 3 && pair.is_adaptive());
     /// # Ok::<(), a3_core::Error>(())
     /// ```
     ///
     /// # Errors
     /// Those of [`new`](Self::new); or the tableau has a wrong shape, is implicit, has numbers that
-    /// are not finite, or weights that do not sum to 1, or both results are the same.
+    /// are not finite, or weights that do not sum to 1, both results are the same, or the states
+    /// within a step do not end at the result.
     pub fn from_tableau(
         name: impl Into<String>,
         a: &[Vec<f64>],
         b: &[f64],
         estimate: Option<&[f64]>,
+        within: &[Vec<f64>],
     ) -> Result<Self, Error> {
-        let (tableau, order) = tableau_of(a, b, estimate)?;
+        if estimate.is_none() && !within.is_empty() {
+            let why = "a tableau without b_hat takes fixed steps, which have a polynomial already";
+            return Err(Error::Invalid(why.into()));
+        }
+        let (tableau, order) = tableau_of(a, b, estimate, within)?;
         let tableau: &'static Tableau = Box::leak(Box::new(tableau));
         let method = match estimate {
             Some(_) => Self::made(name.into(), order, Create::OwnPair(tableau))?,

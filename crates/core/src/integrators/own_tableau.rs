@@ -27,15 +27,18 @@ struct Tree {
     share: f64,
 }
 
-/// Returns the tableau of these weights, which lives as long as the program, and its order.
+/// Returns the tableau of these weights, which lives as long as the program, and its order. For
+/// each stage, `within` has the weights of the powers of theta, from the first on, in the
+/// polynomial within a step.
 ///
 /// # Errors
 /// The tableau has a wrong shape, is implicit, has numbers that are not finite, or weights that do
-/// not sum to 1, or both results are the same.
+/// not sum to 1, both results are the same, or the polynomial does not end at the result.
 pub(super) fn tableau_of(
     a: &[Vec<f64>],
     b: &[f64],
     estimate: Option<&[f64]>,
+    within: &[Vec<f64>],
 ) -> Result<(Tableau, u32), Error> {
     let rows = explicit_rows(a, b, estimate)?;
     let order = known_order("b", &rows, b)?;
@@ -69,8 +72,34 @@ pub(super) fn tableau_of(
         exponent: f64::from(least) + 1.0,
         extra: &[],
         dense: &[],
+        powers: powers_of(within, b)?,
     };
     Ok((tableau, order))
+}
+
+/// Returns the weights of all stages for each power of theta; none if there is no polynomial.
+fn powers_of(within: &[Vec<f64>], b: &[f64]) -> Result<&'static [&'static [f64]], Error> {
+    let powers = within.first().map_or(0, Vec::len);
+    if within.is_empty() {
+        return Ok(&[]);
+    }
+    if ![b.len(), b.len() + 1].contains(&within.len()) || within.iter().any(|p| p.len() != powers) {
+        return wrong(format!(
+            "P has as many rows as b has weights, {}, or one more, all of one length",
+            b.len()
+        ));
+    }
+    for (i, (row, weight)) in within.iter().zip(b.iter().chain([&0.0])).enumerate() {
+        let sum: f64 = row.iter().sum();
+        // NaN is no sum.
+        if (sum - weight).abs().is_nan() || (sum - weight).abs() > TOLERANCE {
+            return wrong(format!(
+                "row {i} of P sums to {sum}, where {weight} is expected: the weight in b, or 0 beyond it"
+            ));
+        }
+    }
+    let columns = (0..powers).map(|j| leaked(within.iter().map(|row| row[j]).collect()));
+    Ok(columns.collect::<Vec<_>>().leak())
 }
 
 fn leaked(numbers: Vec<f64>) -> &'static [f64] {

@@ -46,6 +46,7 @@ static DORMAND_PRINCE_TABLEAU: Tableau = Tableau {
             -1_453_857_185.0 / 822_651_844.0, 69_997_945.0 / 29_380_423.0,
         ],
     ],
+    powers: &[],
 };
 
 /// DOP853: the method of order 8 of Dormand and Prince, with error estimates of orders 5 and 3 and
@@ -170,6 +171,7 @@ static DOP853_TABLEAU: Tableau = Tableau {
             -149.726_836_257_985_64,
         ],
     ],
+    powers: &[],
 };
 
 /// Runge-Kutta-Fehlberg 4(5) (Fehlberg, NASA TR R-315, 1969). The state is advanced by the method
@@ -218,6 +220,7 @@ static RKF45_TABLEAU: Tableau = Tableau {
             5.0 / 3.0, 16.0 / 3.0,
         ],
     ],
+    powers: &[],
 };
 
 /// Verner 6(5): the most efficient of Verner's pairs of orders 6 and 5 (Verner, *Numerically
@@ -289,4 +292,5 @@ static VERNER65_TABLEAU: Tableau = Tableau {
             -1.085_394_970_507_553_4,
         ],
     ],
+    powers: &[],
 };

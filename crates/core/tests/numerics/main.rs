@@ -10,6 +10,7 @@ mod bdf;
 mod callbacks;
 mod compliant;
 mod damping;
+mod dense;
 mod ends;
 mod foreign;
 mod horizon;

@@ -76,7 +76,7 @@ fn an_own_step_with_an_estimate_takes_the_steps_of_its_tableau() {
     let other = [7.0 / 24.0, 0.25, 1.0 / 3.0, 0.125];
     let b = [2.0 / 9.0, 1.0 / 3.0, 4.0 / 9.0];
     let a = [vec![], vec![0.5], vec![0.0, 0.75]];
-    let tableau = Method::from_tableau("own-bs23", &a, &b, Some(&other)).unwrap();
+    let tableau = Method::from_tableau("own-bs23", &a, &b, Some(&other), &[]).unwrap();
     let own = Method::from_estimated_step("own-estimated", 3, move |f, t, y, h| {
         let k1 = f.at(t, y)?;
         let k2 = f.at(t + 0.5 * h, &plus(y, 0.5 * h, &k1))?;

@@ -207,6 +207,9 @@ class Method:
         default_step: step of runs for which none is given (s).
         adaptive: whether `step` is a function that returns the state at t + h and an estimate of its error, each (n,).
             The method then chooses its steps to a tolerance; between their ends, states are on the cubic through both.
+        degree: degree d of the method's own polynomial within a step, in place of that cubic: `step` then returns
+            besides the arrays q_1, ..., q_d, so (2 + d, n) in all, with which the state at t + theta h is
+            y + theta q_1 + theta^2 q_2 + ... . Their sum is the change of y in the step.
 
         def step(f, t, y, h):
             k = f(t, y)
@@ -223,6 +226,7 @@ class Method:
         *,
         default_step: float = 1e-3,
         adaptive: bool = False,
+        degree: int = 0,
     ) -> None:
         if not callable(step):
             raise InputError(f"step: a function of f, t, y and h is expected, not {type(step).__name__}")
@@ -232,10 +236,14 @@ class Method:
             raise InputError("default_step: a method with adaptive=True takes a tolerance")
         if adaptive and isinstance(step, type):
             raise InputError("step: with adaptive=True a function is expected, not a class")
-        self.name, self.step, self._options = name, step, {"default_step": default_step, "adaptive": adaptive}
-        self.order, evaluations = _measure(step, name, adaptive) if order is None else (order, order)
+        if degree < 0 or degree and not adaptive:
+            raise InputError(f"degree is at least 1, of a method with adaptive=True, not {degree}")
+        self.name, self.step = name, step
+        self._options = {"default_step": default_step, "adaptive": adaptive, "degree": degree}
+        rows = 2 + degree if adaptive else 0
+        self.order, evaluations = _measure(step, name, rows) if order is None else (order, order)
         if adaptive:
-            _a3.add_adaptive(name, step, self.order, evaluations)
+            _a3.add_adaptive(name, step, self.order, evaluations, degree)
         else:
             _a3.add_method(name, step, self.order, evaluations, default_step)
 
@@ -246,6 +254,7 @@ class Method:
         b: npt.ArrayLike,
         b_hat: Optional[npt.ArrayLike] = None,
         c: Optional[npt.ArrayLike] = None,
+        P: Optional[npt.ArrayLike] = None,
     ) -> "Method":
         """Returns the explicit Runge-Kutta method of a Butcher tableau, as fast as those of a3.
 
@@ -256,10 +265,13 @@ class Method:
             b_hat: weights of another result, (s,), or (s + 1,) with that of f at the end of the step. The difference
                 of both estimates the error, and the method chooses its steps to a tolerance.
             c: times of the stages, (s,), which are the sums of the rows of A.
+            P: weights of the powers of theta, from the first on, in the state at t + theta h, (s, d) or (s + 1, d), as
+                SciPy's solvers have them: y + h sum of P_ij theta^j k_i. Without them, states between the ends of a
+                step are on the cubic through both.
 
-        The order follows from the tableau. Between the ends of a step, states are on the cubic through both.
+        The order follows from the tableau.
         """
-        return _Tableau(name, A, b, b_hat, c)
+        return _Tableau(name, A, b, b_hat, c, P)
 
     def __reduce__(self) -> Any:
         make = functools.partial(Method, **self._options)
@@ -279,6 +291,7 @@ class _Tableau(Method):
         b: npt.ArrayLike,
         b_hat: Optional[npt.ArrayLike],
         c: Optional[npt.ArrayLike],
+        P: Optional[npt.ArrayLike],
     ) -> None:
         rows, weights = _numbers("A", A, (-1, -1)), _numbers("b", b, (-1,))
         other = None if b_hat is None else _numbers("b_hat", b_hat, (-1,))
@@ -287,8 +300,10 @@ class _Tableau(Method):
             if (wrong := np.abs(times - sums) > 1e-9).any():
                 i = int(wrong.argmax())
                 raise InputError(f"c: stage {i} is at {times[i]}, but row {i} of A sums to {sums[i]}")
-        self.name, self._given = name, (A, b, b_hat, c)
-        self.order = _a3.add_tableau(name, rows.tolist(), weights.tolist(), other if other is None else other.tolist())
+        within = [] if P is None else _numbers("P", P, (-1, -1)).tolist()
+        self.name, self._given = name, (A, b, b_hat, c, P)
+        hat = None if other is None else other.tolist()
+        self.order = _a3.add_tableau(name, rows.tolist(), weights.tolist(), hat, within)
 
     def __reduce__(self) -> Any:
         return Method.tableau, (self.name, *self._given)
@@ -490,8 +505,10 @@ def _numbers(what: str, given: npt.ArrayLike, shape: Optional[Sequence[int]], ki
     return array
 
 
-def _measure(step: Any, name: str, adaptive: bool) -> "tuple[int, int]":
-    """Measures the order of a method and its evaluations in a step, on logistic growth y' = y (1 - y) in two numbers."""
+def _measure(step: Any, name: str, rows: int) -> "tuple[int, int]":
+    """Measures the order of a method and its evaluations in a step, on logistic growth y' = y (1 - y) in two numbers.
+
+    An adaptive method returns rows, of which the first is the state."""
     count = 0
 
     def f(t: float, y: npt.ArrayLike) -> Floats:
@@ -506,8 +523,8 @@ def _measure(step: Any, name: str, adaptive: bool) -> "tuple[int, int]":
         exact = 1.0 / (1.0 + (1.0 / y - 1.0) * np.exp(-2.0))
         for k in range(n):
             found = taken(f, k * h, y, h)
-            if adaptive:
-                found = _numbers(f"what the step of {name} returned", found, (2, 2))[0]
+            if rows:
+                found = _numbers(f"what the step of {name} returned", found, (rows, 2))[0]
             y = _numbers(f"what the step of {name} returned", found, (2,))
         return float(np.abs(y - exact).max())
 
