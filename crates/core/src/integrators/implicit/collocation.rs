@@ -202,6 +202,8 @@ impl Collocation {
                 self.remaining = self.rate / (1.0 - self.rate);
                 let predicted = self.remaining * size * self.rate.powi(left);
                 if !(self.rate < 0.99 && predicted < enough) {
+                    // Iterations that diverge say nothing about the next ones.
+                    self.remaining = 1.0;
                     return (work, false);
                 }
             } else if !size.is_finite() {
