@@ -19,6 +19,8 @@ pub enum Refusal {
     LacksSprings,
     /// Forces depend on the velocity, other than by drag.
     ReadsVelocity,
+    /// The system has a mass matrix, M y' = f(t, y).
+    HasMassMatrix,
     /// Masses and springs, or rigid bodies, have a Jacobian that is no small matrix.
     NotPlain,
     /// The system is too large for the Jacobian of its f.
@@ -72,6 +74,10 @@ impl fmt::Display for Refusal {
             Self::NotPlain => f.write_str(
                 "serves systems y' = f(t, y) of plain numbers, neither networks nor rigid bodies: use \
                  bdf",
+            ),
+            Self::HasMassMatrix => f.write_str(
+                "solves y' = f(t, y), but this system has a mass matrix, M y' = f(t, y): use radau \
+                 or bdf to a tolerance",
             ),
             Self::TooLarge { numbers, most } => write!(
                 f,

@@ -26,6 +26,21 @@ pub(crate) fn evaluation_cost(dim: usize) -> f64 {
     COSTS[0] + COSTS[1] * dim as f64
 }
 
+/// Returns the numbers of a system with a mass matrix that have no derivative in it: they follow
+/// from others, with the rounding errors of these.
+pub(crate) fn without_derivative(system: &dyn ParticleSystem) -> Vec<usize> {
+    let mass = system.mass_matrix();
+    if mass.is_empty() {
+        return vec![];
+    }
+    let mut is_moved = vec![false; system.dim()];
+    mass.iter()
+        .for_each(|(_, k, _)| is_moved[*k as usize] = true);
+    let all = is_moved.into_iter().enumerate();
+    all.filter_map(|(k, is_moved)| (!is_moved).then_some(k))
+        .collect()
+}
+
 /// Returns the size of a number y of a system, to which the step of a difference quotient is in
 /// proportion: at least the number's own [scale](ParticleSystem::scales), or 1 without scales.
 pub(crate) fn size(system: &dyn ParticleSystem, number: usize, y: f64) -> f64 {
@@ -33,7 +48,8 @@ pub(crate) fn size(system: &dyn ParticleSystem, number: usize, y: f64) -> f64 {
     y.abs().max(scale.unwrap_or(1.0))
 }
 
-/// A first-order system y' = f(t, y).
+/// A first-order system y' = f(t, y), or M y' = f(t, y) with a constant [mass
+/// matrix](ParticleSystem::mass_matrix) M.
 ///
 /// Logistic growth y' = y (1 - y), whose solution from 1/2 is 1 / (1 + exp(-t)):
 ///
@@ -83,6 +99,15 @@ pub trait ParticleSystem {
     /// Returns the row and the column of each entry of the Jacobian that may differ from 0; empty
     /// if that is not known beforehand: methods then search them.
     fn sparsity(&self) -> &[(u32, u32)] {
+        &[]
+    }
+
+    /// Returns the row, the column and the value of each entry of M that is not 0, column by column,
+    /// if the system is M y' = f(t, y) with a constant matrix M; empty if M is 1.
+    ///
+    /// M may be singular: then some equations have no derivative, and have to determine the numbers
+    /// that the others leave open (index 1). Only Radau IIA and BDF solve such systems.
+    fn mass_matrix(&self) -> &[(u32, u32, f64)] {
         &[]
     }
 

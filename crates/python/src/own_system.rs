@@ -61,6 +61,10 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
         }
         let sparsity: Vec<(u32, u32)> = system.getattr("_sparsity")?.extract()?;
         made = made.with_sparsity(sparsity).map_err(failed)?;
+        let mass: Vec<(u32, u32, f64)> = system.getattr("_mass")?.extract()?;
+        if !mass.is_empty() {
+            made = made.with_mass_matrix(mass).map_err(failed)?;
+        }
         let jumps: Vec<f64> = system.getattr("_jumps")?.extract()?;
         made = made.with_jumps(jumps).map_err(failed)?;
         let (count, quantities): (usize, Bound<PyAny>) =

@@ -12,7 +12,7 @@ use super::trial::{LastStep, Trial};
 use crate::error::{Error, at_least};
 use crate::measure::Measure;
 use crate::sums::{OnBlock, add_up};
-use crate::system::{ParticleSystem, rigid_of};
+use crate::system::{ParticleSystem, rigid_of, without_derivative};
 use crate::threads::{Columns, copy, threads};
 use crate::work::Work;
 
@@ -25,6 +25,9 @@ const MIN_STEP_SHARE: f64 = 1e-12;
 const FIRST_STEPS: (f64, f64) = (1e-2, 1e-6);
 /// Least and greatest ratio of a step to the previous one.
 const STEP_RATIOS: (f64, f64) = (0.2, 8.0);
+
+/// Rounding error of an equation, over its largest number.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// A step that an adaptive method took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -245,6 +248,11 @@ impl Adaptive {
                 }
             }
         });
+        let largest = y.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
+        let least = ROUNDING / self.tolerance.relative * largest;
+        for k in without_derivative(system) {
+            sizes[k] = sizes[k].max(least);
+        }
     }
 
     /// Advances y from t by one step of at most `longest` (s) that was begun, where numbers have
@@ -345,10 +353,14 @@ impl Adaptive {
             FIRST_STEPS.0
         };
         let h = (0.01 * slope).min(longest);
-        scaled_sum(y1, y, h, f0);
-        system.eval_f(t + h, y1, f1);
-        for (f1, f0) in f1.iter_mut().zip(f0) {
-            *f1 = (*f1 - *f0) / h;
+        if let Some(second) = self.trial.second_derivative() {
+            f1.copy_from_slice(second);
+        } else {
+            scaled_sum(y1, y, h, f0);
+            system.eval_f(t + h, y1, f1);
+            for (f1, f0) in f1.iter_mut().zip(f0) {
+                *f1 = (*f1 - *f0) / h;
+            }
         }
         let bend = norm.time_scale(y, f1, 2);
         let time = slope.min(bend);

@@ -169,6 +169,13 @@ impl Method {
         self.view == View::Jacobian || self.is_foreign()
     }
 
+    /// Returns whether the method, to a tolerance, solves M y' = f(t, y) with a [mass
+    /// matrix](ParticleSystem::mass_matrix). A solver of another library has to know M.
+    #[must_use]
+    pub fn takes_mass_matrix(&self) -> bool {
+        matches!(self.create, Create::Adaptive(..)) || self.is_foreign()
+    }
+
     /// Returns whether the method solves spring by spring, and supports no other forces between
     /// particles.
     #[must_use]
@@ -193,6 +200,9 @@ impl Method {
     /// Returns the reason why the method does not support a system; `None` if it does.
     #[must_use]
     pub fn refusal(&self, system: &dyn ParticleSystem) -> Option<Refusal> {
+        if !system.mass_matrix().is_empty() && !self.takes_mass_matrix() {
+            return Some(Refusal::HasMassMatrix);
+        }
         let is_rigid = system.rigid().is_some();
         let is_network = || system.mechanics().is_some_and(|m| m.linearized().is_some());
         if self.is_foreign() && (is_rigid || is_network()) {

@@ -46,6 +46,12 @@ pub(super) trait Trial: Send {
     /// Writes f at the beginning of the step to `out`.
     fn derivative(&self, system: &dyn ParticleSystem, out: &mut [f64]);
 
+    /// Returns the second derivative of y at the beginning of a first step, where it is known and f
+    /// is not the first.
+    fn second_derivative(&self) -> Option<&[f64]> {
+        None
+    }
+
     /// Tries a step of h (s). Returns its cost, and its estimated error over the allowed one, which
     /// is at most 1 for an accepted step.
     fn attempt(

@@ -19,8 +19,8 @@ enum Jacobian {
     Sparse(Box<Entries>),
 }
 
-/// System of first order, y' = f(t, y), whose f is a function. Its numbers have no unit that is
-/// known, and errors are those of its state.
+/// System of first order, y' = f(t, y) or M y' = f(t, y), whose f is a function. Its numbers have
+/// no unit that is known, and errors are those of its state.
 ///
 /// Van der Pol's oscillator, with its Jacobian:
 ///
@@ -51,6 +51,8 @@ pub struct Ode {
     jacobian: Jacobian,
     /// Row and column of each entry of the Jacobian that may differ from 0, if they are known.
     sparsity: Vec<(u32, u32)>,
+    /// Row, column and value of each entry of the mass matrix, column by column; empty if it is 1.
+    mass: Vec<(u32, u32, f64)>,
     scales: Vec<f64>,
     quantities: Option<(usize, Box<Function>)>,
     /// Times at which f jumps (s), in order.
@@ -77,6 +79,7 @@ impl Ode {
             f: Box::new(move |t, y, dydt| f(t, y, dydt).outcome()),
             jacobian: Jacobian::Unknown,
             sparsity: vec![],
+            mass: vec![],
             scales: vec![],
             quantities: None,
             jumps: vec![],
@@ -122,12 +125,74 @@ impl Ode {
     pub fn with_sparsity(self, mut entries: Vec<(u32, u32)>) -> Result<Self, Error> {
         let dim = self.dim;
         if let Some(wrong) = entries.iter().find(|entry| is_outside(dim, **entry)) {
-            return Err(Error::Invalid(outside(dim, *wrong)));
+            return Err(Error::Invalid(outside("the Jacobian", dim, *wrong)));
         }
         entries.sort_unstable_by_key(|(row, column)| (*column, *row));
         entries.dedup();
         Ok(Self {
             sparsity: entries,
+            ..self
+        })
+    }
+
+    /// Makes the system M y' = f(t, y), with a constant matrix M: the row, the column and the value
+    /// of each entry that is not 0. Values of the same place are added up. Radau IIA and BDF solve
+    /// such systems, also where M is singular and the equations without a derivative determine the
+    /// numbers that the others leave open (index 1); see
+    /// [`mass_matrix`](ParticleSystem::mass_matrix).
+    ///
+    /// A reaction of which the last equation says that nothing is lost:
+    ///
+    /// ```
+    /// use a3_core::integrators::{self, Tolerance};
+    /// use a3_core::Ode;
+    ///
+    /// let reaction = Ode::new(2, |_t, y, f| {
+    ///     f[0] = -y[0];
+    ///     f[1] = y[0] + y[1] - 1.0;
+    /// })?
+    /// .with_mass_matrix(vec![(0, 0, 1.0)])?;
+    /// let radau = integrators::find("radau").unwrap();
+    /// let mut radau = radau.adaptive(&reaction, Tolerance::new(1e-8)?).unwrap();
+    /// let (mut t, mut y) = (0.0, [1.0, 0.0]);
+    /// while t < 1.0 {
+    ///     t += radau.advance(&reaction, t, 1.0 - t, &mut y)?.h;
+    /// }
+    /// assert!((y[1] - (1.0 - f64::exp(-1.0))).abs() < 1e-8);
+    /// # Ok::<(), a3_core::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A row or a column is not one of the system, a value is not finite, or all are 0.
+    pub fn with_mass_matrix(self, mut entries: Vec<(u32, u32, f64)>) -> Result<Self, Error> {
+        let place = |(i, j, _): &(u32, u32, f64)| (*j, *i);
+        for (i, j, value) in &entries {
+            if is_outside(self.dim, (*i, *j)) {
+                let why = outside("the mass matrix", self.dim, (*i, *j));
+                return Err(Error::Invalid(why));
+            }
+            if !value.is_finite() {
+                let why = format!("the mass matrix is {value} in row {i} and column {j}");
+                return Err(Error::Invalid(why));
+            }
+        }
+        entries.sort_by_key(place);
+        entries.dedup_by(|next, first| {
+            let is_same = place(next) == place(first);
+            first.2 += if is_same { next.2 } else { 0.0 };
+            is_same
+        });
+        entries.retain(|(.., value)| *value != 0.0);
+        if entries.is_empty() {
+            let why = "the mass matrix is 0: then f(t, y) = 0 has no time in which to step";
+            return Err(Error::Invalid(why.into()));
+        }
+        let is_one = |(k, entry): (u32, &(u32, u32, f64))| *entry == (k, k, 1.0);
+        if entries.len() == self.dim && (0..).zip(&entries).all(is_one) {
+            entries.clear();
+        }
+        Ok(Self {
+            mass: entries,
             ..self
         })
     }
@@ -267,9 +332,9 @@ fn is_outside(dim: usize, (row, column): (u32, u32)) -> bool {
     row.max(column) as usize >= dim
 }
 
-/// Says that a place is outside that Jacobian.
-fn outside(dim: usize, (row, column): (u32, u32)) -> String {
-    format!("the Jacobian of {dim} numbers has no row {row} and column {column}: they begin at 0")
+/// Says that a place is outside a matrix of such a system.
+fn outside(what: &str, dim: usize, (row, column): (u32, u32)) -> String {
+    format!("{what} of {dim} numbers has no row {row} and column {column}: they begin at 0")
 }
 
 impl ParticleSystem for Ode {
@@ -320,7 +385,7 @@ impl ParticleSystem for Ode {
             write(t, y, entries)?;
             let mut places = entries.iter().map(|(i, j, _)| (*i, *j));
             if let Some(wrong) = places.find(|place| is_outside(self.dim, *place)) {
-                return Err(outside(self.dim, wrong));
+                return Err(outside("the Jacobian", self.dim, wrong));
             }
             let wrong = entries.iter().find(|(.., value)| !value.is_finite());
             match wrong.filter(|_| self.is_defined(t, y)) {
@@ -339,6 +404,10 @@ impl ParticleSystem for Ode {
 
     fn sparsity(&self) -> &[(u32, u32)] {
         &self.sparsity
+    }
+
+    fn mass_matrix(&self) -> &[(u32, u32, f64)] {
+        &self.mass
     }
 
     fn scales(&self) -> &[f64] {

@@ -18,7 +18,8 @@ const STIFF_RATIO: f64 = 8.0;
 const MOST: f64 = 1e6;
 
 /// Returns whether Radau reaches a time (s) with less than an eighth of the work of DOP853, and the
-/// work of both. No system is stiff that Radau does not support. `None` if `go_on` returned false.
+/// work of both. No system is stiff that Radau does not support, and one with a mass matrix is, which
+/// no explicit method supports. `None` if `go_on` returned false.
 ///
 /// # Errors
 /// A function of the system failed, or a system of one's own takes more than a million evaluations.
@@ -28,6 +29,9 @@ pub(crate) fn is_stiff(
     go_on: &dyn Fn() -> bool,
 ) -> Result<Option<(bool, Work)>, Error> {
     let mut work = Work::default();
+    if !scene.model.system().mass_matrix().is_empty() {
+        return Ok(Some((true, work)));
+    }
     for tolerance in TOLERANCES {
         match race(scene, until, tolerance, &mut work, go_on)? {
             None => return Ok(None),

@@ -16,6 +16,7 @@ mod foreign;
 mod horizon;
 mod implicit;
 mod limits;
+mod mass;
 mod mixed;
 mod nystrom;
 mod observed;

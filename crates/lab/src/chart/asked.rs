@@ -92,6 +92,12 @@ pub fn check_metric(metric: Metric, scene: &Scene) -> Result<(), Failure> {
     }
     let motion = Metric::of_motion(&scene.model);
     match metric {
+        Metric::Phase if !scene.model.system().mass_matrix().is_empty() => {
+            Err(Failure::usage(format!(
+                "the scene {} has a mass matrix, so that no phase is known: ask for state",
+                scene.name
+            )))
+        }
         Metric::Phase => Ok(()),
         metric if metric == motion => Ok(()),
         Metric::State => Err(Failure::usage(format!(

@@ -27,6 +27,12 @@ pub fn stability(
     monitor: &dyn Monitor,
 ) -> Result<Stability, Failure> {
     check_scene(scene)?;
+    if !scene.model.system().mass_matrix().is_empty() {
+        return Err(Failure::usage(format!(
+            "scene {}: with a mass matrix, methods run to tolerances alone, and no step has a limit",
+            scene.name
+        )));
+    }
     let methods = check_methods(scene, methods)?;
     measure(scene, &Label::of(scene), &methods, monitor)
 }

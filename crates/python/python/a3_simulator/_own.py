@@ -30,7 +30,7 @@ Solve = Callable[[Callable[[float, npt.ArrayLike], Floats], Floats, Floats, floa
 
 
 class System:
-    """A system of first order, y' = f(t, y), with the state from which it starts.
+    """A system of first order, y' = f(t, y) or M y' = f(t, y), with the state from which it starts.
 
     Args:
         f: function of the time t and the state y, an array (n,), that returns y', an array (n,). The result depends on
@@ -49,6 +49,10 @@ class System:
         sparsity: which numbers act on which, so that few differences are taken: a sparse matrix of SciPy or an array,
             (n, n), that is 0 where the Jacobian always is, or pairs of rows and columns, (k, 2); of two numbers,
             integers are pairs. By default it is found by some evaluations, of which it spares most.
+        mass: constant matrix M of a system M y' = f(t, y), (n, n), an array or a sparse matrix of SciPy, or its diagonal,
+            (n,). It may be singular: the equations without a derivative then determine the numbers that the others
+            leave open (index 1). Only "radau" and "bdf" solve such systems. Where y0 does not satisfy the equations
+            without a derivative, the first step starts from near values that do, with the same M y.
         args: further arguments of f and jac, after t and y.
         tstops: times at which f or one of its derivatives jumps: a step of each of a3's methods ends there.
             f at such a time is that after the jump, so compare t with the same numbers.
@@ -73,6 +77,8 @@ class System:
     _scales: Sequence[float] = ()
     #: Row and column of each entry of the Jacobian that may differ from 0; empty where they are found.
     _sparsity: Sequence[Tuple[int, int]] = ()
+    #: Row, column and value of each entry of the mass matrix; empty where it is 1.
+    _mass: Sequence[Tuple[int, int, float]] = ()
     #: Times at which f jumps.
     _jumps: Sequence[float] = ()
     #: Number of quantities by which states are compared, and the function that returns them; 0 for the state's numbers.
@@ -87,6 +93,7 @@ class System:
         scale: Optional[npt.ArrayLike] = None,
         jac: Optional[Derivative] = None,
         sparsity: Any = None,
+        mass: Any = None,
         args: Sequence[Any] = (),
         tstops: npt.ArrayLike = (),
     ) -> None:
@@ -109,6 +116,8 @@ class System:
         self._jumps = _numbers("tstops", tstops, (-1,))
         if sparsity is not None:
             self._sparsity = _places(sparsity, self.y0.size, self._state.size // self.y0.size)
+        if mass is not None:
+            self._mass = _mass_entries(mass, self.y0.size, kind)
         if scale is not None:
             same = np.broadcast_to(scale, self.y0.shape) if np.ndim(scale) == 0 else scale
             self._scales = _numbers("scale", same, self.y0.shape).repeat(self._state.size // self.y0.size)
@@ -480,6 +489,25 @@ def _places(sparsity: Any, size: int, parts: int) -> Sequence[Tuple[int, int]]:
         raise InputError(f"sparsity: there is no row {row} and column {column} of {size} numbers: they begin at 0")
     of_parts = [(i, j) for i in range(parts) for j in range(parts)]
     return [(parts * int(row) + i, parts * int(column) + j) for row, column in places for i, j in of_parts]
+
+
+def _mass_entries(mass: Any, size: int, kind: Type[Any]) -> Sequence[Tuple[int, int, float]]:
+    """Returns the rows, columns and values of a mass matrix, sparse or not, or a diagonal, for flat real numbers."""
+    if hasattr(mass, "tocoo"):
+        found, shape = mass.tocoo(), mass.shape
+        rows, columns, values = found.row, found.col, _numbers("mass", found.data, (-1,), kind)
+    else:
+        array = np.diag(_numbers("mass", mass, (size,), kind)) if np.ndim(mass) == 1 else mass
+        array = _numbers("mass", array, (size, size), kind)
+        shape, (rows, columns) = array.shape, np.nonzero(array)
+        values = array[rows, columns]
+    if shape != (size, size):
+        raise InputError(f"mass: a matrix of shape {(size, size)} is expected, not {shape}")
+    entries = [(int(i), int(j), value) for i, j, value in zip(rows, columns, values)]
+    if kind is not complex:
+        return [(i, j, float(value)) for i, j, value in entries]
+    parts = [(0, 0, 1.0), (0, 1, 1j), (1, 0, -1j), (1, 1, 1.0)]
+    return [(2 * i + a, 2 * j + b, (turn * value).real) for i, j, value in entries for a, b, turn in parts]
 
 
 def _name(function: Any, otherwise: str) -> str:

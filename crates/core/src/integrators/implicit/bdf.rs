@@ -1,10 +1,10 @@
 //! The numerical differentiation formulas of orders 1 to 5, by backward differences `D_j` of the
 //! states at the ends of equal steps (Shampine, Reichelt, *The MATLAB ODE suite*, SIAM J. Sci.
 //! Comput. 18, 1997; Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, V.1). At
-//! the end y1 of a step of order k, `sum(D_j / j, j = 1..k) - kappa_k g_k D_(k+1) = h f(t + h, y1)`
-//! with `g_k = 1 + 1/2 + ... + 1/k`. When h changes, the polynomial through the states is evaluated
-//! at new times. Stiff motion is damped out. A single step of a given length, which has no history,
-//! is one of TR-BDF2.
+//! the end y1 of a step of order k, `M (sum(D_j / j, j = 1..k) - kappa_k g_k D_(k+1)) = h f(t + h,
+//! y1)` with the mass matrix M, which is mostly 1, and `g_k = 1 + 1/2 + ... + 1/k`. When h changes,
+//! the polynomial through the states is evaluated at new times. Stiff motion is damped out. A
+//! single step of a given length, which has no history, is one of TR-BDF2.
 //!
 //! The numerical differentiation formulas: their coefficients, errors, and stable regions.
 
@@ -14,6 +14,7 @@ use super::super::error_norm::ErrorNorm;
 use super::super::method::{Create, Method, View};
 use super::super::sweep::{add_scaled, scaled_sum};
 use super::super::trial::{LastStep, Trial};
+use super::consistent::Consistent;
 use super::jacobian::Jacobian;
 use super::kept::{KeptSolver, Tangent};
 use super::newton::MAX_ORDER;
@@ -69,6 +70,8 @@ struct Bdf {
     is_parabola: bool,
     /// Ratio of the next step to the last.
     change: f64,
+    /// Beginning of a run with a mass matrix.
+    consistent: Option<Consistent>,
     predicted: Vec<f64>,
     base: Vec<f64>,
     /// Error of a step.
@@ -93,6 +96,7 @@ impl Bdf {
             first: true,
             is_parabola: false,
             change: 1.0,
+            consistent: Consistent::of(system),
             predicted: zeros(),
             base: zeros(),
             sum: zeros(),
@@ -221,7 +225,9 @@ impl Bdf {
 
 impl Trial for Bdf {
     fn check(&self, _: &dyn ParticleSystem) -> Result<(), Error> {
-        self.solver.jacobian().map_or(Ok(()), Jacobian::check)
+        self.solver.jacobian().map_or(Ok(()), Jacobian::check)?;
+        let consistent = self.consistent.as_ref();
+        consistent.map_or(Ok(()), Consistent::check)
     }
 
     fn dim(&self) -> usize {
@@ -248,7 +254,15 @@ impl Trial for Bdf {
         self.step.y0.copy_from_slice(y);
         system.hold(t, &mut self.step.y0);
         self.solver.project(system, &mut self.step.y0);
-        system.eval_f(t, &self.step.y0, &mut self.step.k[0]);
+        self.solver.forget(system);
+        let mut work = Work::of(1);
+        match (&mut self.consistent, self.solver.jacobian_mut()) {
+            (Some(consistent), Some(jacobian)) => {
+                work = consistent.begin(system, jacobian, t, &mut self.step.y0);
+                self.step.k[0].copy_from_slice(&consistent.rates);
+            }
+            _ => system.eval_f(t, &self.step.y0, &mut self.step.k[0]),
+        }
         // The first difference is f times the time between the states.
         self.step.h = 1.0;
         self.first = true;
@@ -258,8 +272,7 @@ impl Trial for Bdf {
             next: 1,
             equal: 0,
         };
-        self.solver.forget(system);
-        Work::of(1)
+        work
     }
 
     /// Begins with order 2: if contact changes the end of each step, there are no previous steps,
@@ -267,6 +280,9 @@ impl Trial for Bdf {
     fn begin_again(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
         let moment = MOMENT_SHARE * self.step.h;
         let mut work = self.begin(system, t, y);
+        if self.consistent.is_some() {
+            return work;
+        }
         let LastStep { y0, k, .. } = &mut self.step;
         let [first, second, ..] = &mut k[..] else {
             return work;
@@ -294,6 +310,11 @@ impl Trial for Bdf {
         }
     }
 
+    fn second_derivative(&self) -> Option<&[f64]> {
+        let consistent = self.consistent.as_ref();
+        consistent.map(|consistent| &*consistent.seconds)
+    }
+
     fn attempt(
         &mut self,
         system: &dyn ParticleSystem,
@@ -301,6 +322,9 @@ impl Trial for Bdf {
         h: f64,
         norm: &ErrorNorm,
     ) -> (Work, f64) {
+        if self.consistent.as_ref().is_some_and(Consistent::has_failed) {
+            return (Work::default(), f64::INFINITY);
+        }
         if h.to_bits() != self.step.h.to_bits() {
             self.rescale(h);
         }

@@ -1,9 +1,10 @@
 //! The equations of Radau IIA with three stages, solved by simplified Newton's method (Hairer,
 //! Wanner, *Solving Ordinary Differential Equations II*, 1996, IV.8). With the nodes c of the
 //! formula of order 5 and the inverse of its matrix A, the displacements `z_i` of the stages from y
-//! satisfy `sum (A^-1)_ij z_j = h f(t + c_i h, y + z_i)`. In the basis of the eigenvectors of A^-1,
-//! z = T w, Newton's method for them splits into a real linear system and a complex one, each of
-//! the size of y. The Jacobian is kept as long as the iterations converge with it.
+//! satisfy `sum (A^-1)_ij M z_j = h f(t + c_i h, y + z_i)`, where the mass matrix M is mostly 1. In
+//! the basis of the eigenvectors of A^-1, z = T w, Newton's method for them splits into a real
+//! linear system and a complex one, each of the size of y. The Jacobian is kept as long as the
+//! iterations converge with it.
 
 use nalgebra::Complex;
 
@@ -86,6 +87,8 @@ pub(super) struct Collocation {
     pub stages: [Vec<f64>; STAGES],
     parts: [Vec<f64>; STAGES],
     f: [Vec<f64>; STAGES],
+    /// Products of the mass matrix with the parts.
+    moved: [Vec<f64>; STAGES],
     at: Vec<f64>,
     /// Right-hand sides, then solutions.
     single: Vec<f64>,
@@ -111,6 +114,7 @@ impl Collocation {
             stages: zeros(),
             parts: zeros(),
             f: zeros(),
+            moved: zeros(),
             at: vec![0.0; dim],
             single: vec![0.0; order],
             pair: vec![Complex::default(); order],
@@ -146,10 +150,9 @@ impl Collocation {
         if self.factored.to_bits() == h.to_bits() {
             return (Work::default(), true);
         }
-        let matrix = &self.jacobian.matrix;
         let shift = Complex::new(PAIR.0, PAIR.1) / h;
-        let of_use = self.real.factorise(REAL / h, 1.0, matrix)
-            && self.complex.factorise(shift, 1.0, matrix);
+        let of_use = self.jacobian.factorise(&mut self.real, REAL / h, 1.0)
+            && self.jacobian.factorise(&mut self.complex, shift, 1.0);
         self.factored = if of_use { h } else { 0.0 };
         let work = Work {
             factorizations: 2,
@@ -228,6 +231,7 @@ impl Collocation {
             stages,
             parts,
             f,
+            moved,
             at,
             single,
             pair,
@@ -238,11 +242,14 @@ impl Collocation {
             add_scaled(at, 1.0, z);
             system.eval_f(t + node * h, at, f);
         }
+        for (part, moved) in parts.iter().zip(&mut *moved) {
+            jacobian.multiply_mass(part, moved);
+        }
         let (real, shift) = (REAL / h, Complex::new(PAIR.0, PAIR.1) / h);
         for (k, &i) in jacobian.unknowns.iter().enumerate() {
             let of = |row: &[f64; STAGES]| row[0] * f[0][i] + row[1] * f[1][i] + row[2] * f[2][i];
-            single[k] = of(&TO_PARTS[0]) - real * parts[0][i];
-            let w = Complex::new(parts[1][i], parts[2][i]);
+            single[k] = of(&TO_PARTS[0]) - real * moved[0][i];
+            let w = Complex::new(moved[1][i], moved[2][i]);
             pair[k] = Complex::new(of(&TO_PARTS[1]), of(&TO_PARTS[2])) - shift * w;
         }
         self.real.solve(single);
@@ -261,7 +268,7 @@ impl Collocation {
         }
     }
 
-    /// Replaces a vector by its product with the inverse of REAL / h - J. Returns the cost.
+    /// Replaces a vector by its product with the inverse of REAL / h M - J. Returns the cost.
     pub fn filter(&mut self, error: &mut [f64]) -> Work {
         let unknowns = &self.jacobian.unknowns;
         for (single, &i) in self.single.iter_mut().zip(unknowns) {

@@ -6,7 +6,8 @@ use super::lu::Lu;
 use super::newton::{Changes, MAX_ITERATIONS, Newton};
 use crate::error::Error;
 use crate::integrators::integrator::check_dim;
-use crate::integrators::sweep::add_scaled;
+use crate::integrators::sweep::{add_scaled, scaled_sum};
+use crate::refusal::Refusal;
 use crate::system::{ParticleSystem, rigid_of};
 use crate::work::Work;
 
@@ -14,7 +15,7 @@ use crate::work::Work;
 /// stay as they are.
 pub(crate) struct Dense {
     pub(super) jacobian: Jacobian,
-    /// Factors of 1 - a J.
+    /// Factors of M - a J.
     factors: Lu<f64>,
     /// Change of the unknowns, and of the whole state.
     solution: Vec<f64>,
@@ -52,6 +53,12 @@ impl Dense {
         newton: Newton,
     ) -> Result<Work, Error> {
         check_dim(self.f.len(), y)?;
+        if !self.jacobian.mass.is_empty() {
+            return Err(Error::Unsupported {
+                method: "a step of a given length",
+                why: Refusal::HasMassMatrix,
+            });
+        }
         let mut work = Work::default();
         let mut changes = Changes::new(true);
         let mut renews = true;
@@ -90,7 +97,7 @@ impl Dense {
         Err(changes.failure())
     }
 
-    /// Adds the solution of (1 - a J) change = base + a f(t, y) - y to y, by the factors.
+    /// Adds the solution of (M - a J) change = M (base - y) + a f(t, y) to y, by the factors.
     pub fn correct(
         &mut self,
         system: &dyn ParticleSystem,
@@ -101,8 +108,14 @@ impl Dense {
     ) -> Work {
         let (unknowns, change) = (&self.jacobian.unknowns, &mut self.solution);
         system.eval_f(t, y, &mut self.f);
-        for (change, &i) in change.iter_mut().zip(unknowns) {
-            *change = base[i] + a * self.f[i] - y[i];
+        if self.jacobian.mass.is_empty() {
+            for (change, &i) in change.iter_mut().zip(unknowns) {
+                *change = base[i] + a * self.f[i] - y[i];
+            }
+        } else {
+            scaled_sum(&mut self.change, base, -1.0, y);
+            self.jacobian.multiply_mass(&self.change, change);
+            add_scaled(change, a, &self.f);
         }
         self.factors.solve(change);
         for (change, &i) in change.iter().zip(unknowns) {
@@ -122,7 +135,7 @@ impl Dense {
         &self.change
     }
 
-    /// Forms J at y, for steps of about `step` (s), and factorises 1 - a J. Returns the cost, and
+    /// Forms J at y, for steps of about `step` (s), and factorises M - a J. Returns the cost, and
     /// whether that succeeded.
     pub fn keep(
         &mut self,
@@ -137,9 +150,9 @@ impl Dense {
         (work, of_use)
     }
 
-    /// Factorises 1 - a J. Returns the cost, and whether that succeeded.
+    /// Factorises M - a J. Returns the cost, and whether that succeeded.
     pub fn factorise(&mut self, a: f64) -> (Work, bool) {
-        let of_use = self.factors.factorise(1.0, a, &self.jacobian.matrix);
+        let of_use = self.jacobian.factorise(&mut self.factors, 1.0, a);
         let work = Work {
             factorizations: 1,
             ..self.jacobian.algebra(self.factors.cost())

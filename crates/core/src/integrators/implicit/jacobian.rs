@@ -4,7 +4,9 @@
 
 use std::ops::Range;
 
-use super::lu::Matrix;
+use nalgebra::ComplexField;
+
+use super::lu::{Lu, Matrix};
 use super::newton::dot;
 use super::pattern::Pattern;
 use crate::error::Error;
@@ -12,7 +14,7 @@ use crate::integrators::method::MAX_DENSE;
 use crate::measure::Measure;
 use crate::random::SplitMix;
 use crate::refusal::Refusal;
-use crate::system::{ParticleSystem, rigid_of, size};
+use crate::system::{ParticleSystem, rigid_of, size, without_derivative};
 use crate::work::Work;
 
 /// Step of a difference quotient, over the size of the number: about the root of the rounding
@@ -67,6 +69,8 @@ pub(super) struct Jacobian {
     /// matrices are small.
     evaluation: f64,
     pub matrix: Matrix,
+    /// Entries of the mass matrix M, column by column; none if it is 1.
+    pub mass: Vec<(u32, u32, f64)>,
     /// Whether differences are central: for bodies and constraints, of whose equations implicit
     /// Euler makes one iteration, which keeps the error of the matrix.
     is_central: bool,
@@ -94,6 +98,7 @@ impl Jacobian {
         let is_sparse = count >= MANY && count == dim && !is_central;
         let given = is_sparse.then(|| system.sparsity().iter().copied());
         let given = given.and_then(|given| pattern_of(count, given));
+        let mass = system.mass_matrix().to_vec();
         Self {
             units: Vec::with_capacity(count),
             evaluation: if is_rigid {
@@ -104,7 +109,8 @@ impl Jacobian {
             unknowns,
             is_given: given.is_some(),
             searches: given.is_none() && count >= MANY && !is_central,
-            matrix: given.map_or_else(|| full(count), sparse),
+            matrix: given.map_or_else(|| full(count), |given| sparse(given, &mass)),
+            mass,
             is_central,
             at: vec![0.0; dim],
             f: vec![0.0; dim],
@@ -195,7 +201,7 @@ impl Jacobian {
         let Some(found) = found else {
             return false;
         };
-        (self.searches, self.matrix) = (false, sparse(found));
+        (self.searches, self.matrix) = (false, sparse(found, &self.mass));
         true
     }
 
@@ -205,6 +211,25 @@ impl Jacobian {
             algebra: multiplications / self.evaluation,
             ..Work::default()
         }
+    }
+
+    /// Writes the product of M with numbers.
+    pub fn multiply_mass(&self, numbers: &[f64], out: &mut [f64]) {
+        if self.mass.is_empty() {
+            return out.copy_from_slice(numbers);
+        }
+        out.fill(0.0);
+        for (i, j, value) in &self.mass {
+            out[*i as usize] += value * numbers[*j as usize];
+        }
+    }
+
+    /// Factorises `shift` M - `scale` J. Returns false if it is singular or not finite.
+    pub fn factorise<T>(&self, factors: &mut Lu<T>, shift: T, scale: f64) -> bool
+    where
+        T: ComplexField<RealField = f64> + Copy,
+    {
+        factors.factorise((shift, &self.mass), scale, &self.matrix)
     }
 
     /// Returns the norm of the unknowns in a state, in their units.
@@ -224,8 +249,13 @@ impl Jacobian {
             Measure::Plain => most = y[numbers].iter().fold(most, |most, y| most.max(y.abs())),
             _ => (),
         });
+        let bound = without_derivative(system);
         let of_plain = |k: usize, f: f64| {
-            let change = LEAST_SIZE * (a * f).abs().min(most);
+            // A tiny change of such a number would round away beside others.
+            let change = match bound.binary_search(&k) {
+                Ok(_) => LEAST_SIZE * most,
+                Err(_) => LEAST_SIZE * (a * f).abs().min(most),
+            };
             let scale = system.scales().get(k).copied();
             let own = y[k].abs().max(scale.unwrap_or(change));
             let sizes = [(own, NO_SIZE * most), (LEAST_SIZE * most, 0.0)];
@@ -354,7 +384,7 @@ impl Jacobian {
                 Matrix::Full(_) => vec![],
             };
             let new = entries.iter().map(|(row, column, _)| (*row, *column));
-            // The matrix of a step, 1 - a J, has a diagonal also where J has none.
+            // The matrix of a step, M - a J, mostly has a diagonal also where J has none.
             let diagonal = (0..count as u32).map(|k| (k, k));
             self.searches = false;
             let all = known.into_iter().chain(new).chain(diagonal);
@@ -362,7 +392,7 @@ impl Jacobian {
                 self.matrix = full(count);
                 return None;
             };
-            self.matrix = sparse(found);
+            self.matrix = sparse(found, &self.mass);
         }
     }
 
@@ -373,6 +403,7 @@ impl Jacobian {
             unknowns,
             units,
             matrix,
+            mass,
             searches,
             at,
             f,
@@ -438,7 +469,7 @@ impl Jacobian {
             (known, found) => known.is_some() || found.is_some(),
         };
         if grows {
-            *matrix = found.map_or_else(|| full(unknowns.len()), sparse);
+            *matrix = found.map_or_else(|| full(unknowns.len()), |found| sparse(found, mass));
         }
         (Work::of(count), grows)
     }
@@ -544,8 +575,9 @@ fn pattern_of(order: usize, entries: impl Iterator<Item = (u32, u32)>) -> Option
     Pattern::of(&columns, MOST).filter(|_| !is_empty)
 }
 
-/// Returns a matrix of zeros of a pattern.
-fn sparse(pattern: Pattern) -> Matrix {
+/// Returns a matrix of zeros of a pattern, for sums with one that has these entries.
+fn sparse(pattern: Pattern, mass: &[(u32, u32, f64)]) -> Matrix {
+    let pattern = pattern.summed_with(mass, MOST);
     let values = vec![0.0; pattern.rows.len()];
     Matrix::Sparse(pattern, values)
 }

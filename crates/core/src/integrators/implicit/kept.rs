@@ -82,6 +82,14 @@ impl KeptSolver {
         }
     }
 
+    /// Returns the same, to be formed elsewhere.
+    pub fn jacobian_mut(&mut self) -> Option<&mut Jacobian> {
+        match &mut self.stage {
+            StageSolver::Mechanical(_) => None,
+            StageSolver::Dense(stage) => Some(&mut stage.jacobian),
+        }
+    }
+
     /// Restores the pattern of the Jacobian. Returns false if it is of another system.
     pub fn set_pattern(&mut self, pattern: &[usize]) -> bool {
         match &mut self.stage {

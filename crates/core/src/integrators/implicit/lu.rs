@@ -14,6 +14,25 @@ pub(super) enum Matrix {
     Sparse(Pattern, Vec<f64>),
 }
 
+impl Matrix {
+    /// Visits the row, the column and the value of each entry.
+    pub fn visit(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        match self {
+            Self::Full(values) => {
+                let n = values.len().isqrt();
+                for (k, value) in values.iter().enumerate() {
+                    visit(k / n, k % n, *value);
+                }
+            }
+            Self::Sparse(pattern, values) => {
+                for ((i, j), value) in pattern.places().into_iter().zip(values) {
+                    visit(i as usize, j as usize, *value);
+                }
+            }
+        }
+    }
+}
+
 /// Cost of the search for pivots, for each entry of the matrix, in products within rows, which are
 /// computed in vectors. Measured, as [`SOLUTION`] was, on matrices of 30 and 150 rows.
 const SEARCH: f64 = 16.0;
@@ -61,29 +80,41 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
         self.costs[1]
     }
 
-    /// Factorises `shift` 1 - `scale` J. Returns false if it is singular or not finite.
-    pub fn factorise(&mut self, shift: T, scale: f64, jacobian: &Matrix) -> bool {
+    /// Factorises `shift` M - `scale` J, for the entries of M, which is 1 if there are none. Returns
+    /// false if it is singular or not finite.
+    pub fn factorise(
+        &mut self,
+        (shift, mass): (T, &[(u32, u32, f64)]),
+        scale: f64,
+        jacobian: &Matrix,
+    ) -> bool {
         let (n, parts) = (self.order, parts::<T>());
         let products = match (jacobian, &mut self.factors) {
             (Matrix::Full(jacobian), _) if jacobian.len() < n * n => None,
             (Matrix::Full(jacobian), Factors::Full(matrix, pivots)) => {
                 matrix.resize(n * n, T::zero());
-                for (k, (entry, slope)) in matrix.iter_mut().zip(jacobian).enumerate() {
-                    let unit = if k % (n + 1) == 0 { shift } else { T::zero() };
-                    *entry = unit - T::from_real(scale * slope);
+                for (entry, slope) in matrix.iter_mut().zip(jacobian) {
+                    *entry = T::zero() - T::from_real(scale * slope);
+                }
+                for (i, j, value) in mass {
+                    matrix[*i as usize * n + *j as usize] += shift * T::from_real(*value);
+                }
+                if mass.is_empty() {
+                    let diagonal = matrix.iter_mut().step_by(n + 1);
+                    diagonal.for_each(|entry| *entry += shift);
                 }
                 eliminate(matrix, pivots)
             }
             (Matrix::Sparse(pattern, values), Factors::Sparse(factors)) => {
-                factors.factorise(shift, scale, pattern, values)
+                factors.factorise((shift, mass), scale, (pattern, values))
             }
             (Matrix::Full(_), factors) => {
                 *factors = Factors::Full(vec![], vec![0; n]);
-                return self.factorise(shift, scale, jacobian);
+                return self.factorise((shift, mass), scale, jacobian);
             }
             (Matrix::Sparse(..), factors) => {
                 *factors = Factors::Sparse(Box::new(Sparse::new(n)));
-                return self.factorise(shift, scale, jacobian);
+                return self.factorise((shift, mass), scale, jacobian);
             }
         };
         let Some(products) = products else {
@@ -196,7 +227,7 @@ mod tests {
         let b: Vec<_> = (1..4).map(|k| Complex::new(f64::from(k), -0.5)).collect();
         let mut lu = Lu::new(3);
         let matrix = |numbers: [f64; 9]| Matrix::Full(numbers.to_vec());
-        assert!(lu.factorise(shift, 2.0, &matrix(jacobian)));
+        assert!(lu.factorise((shift, &[]), 2.0, &matrix(jacobian)));
         // Nine entries; two rows of three numbers and one of two below their pivots.
         assert_eq!(lu.cost(), 2.0 * (SEARCH * 9.0 + 2.0 * 8.0));
         assert_eq!(lu.cost_of_solution(), 2.0 * SOLUTION * 9.0);
@@ -208,9 +239,9 @@ mod tests {
             assert!((shift * x[i] + product - b).norm() < 1e-14);
         }
         let mut real = Lu::new(3);
-        assert!(real.factorise(0.0, 1.0, &matrix(jacobian)));
+        assert!(real.factorise((0.0, &[]), 1.0, &matrix(jacobian)));
         let singular = [1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 0.0, 1.0, 1.0];
-        assert!(!real.factorise(0.0, 1.0, &matrix(singular)));
-        assert!(!real.factorise(0.0, 1.0, &matrix([f64::NAN; 9])));
+        assert!(!real.factorise((0.0, &[]), 1.0, &matrix(singular)));
+        assert!(!real.factorise((0.0, &[]), 1.0, &matrix([f64::NAN; 9])));
     }
 }

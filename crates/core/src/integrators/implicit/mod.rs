@@ -4,6 +4,7 @@
 
 mod bdf;
 mod collocation;
+mod consistent;
 mod dense;
 mod divided;
 mod euler;

@@ -120,6 +120,18 @@ impl Pattern {
         columns.flat_map(of).collect()
     }
 
+    /// Returns the pattern in an order for a sum with a matrix that has these entries besides.
+    pub fn summed_with(mut self, others: &[(u32, u32, f64)], most: usize) -> Self {
+        if others.iter().any(|(i, j, _)| i != j) {
+            let others = others.iter().map(|(i, j, _)| [*i, *j]);
+            let own = self.places().into_iter().map(|(i, j)| [i, j]);
+            let neighbours = cholesky::neighbours(self.starts.len() - 1, own.chain(others));
+            // With much fill, any order is as good.
+            self.order = cholesky::order(neighbours, most).unwrap_or(self.order);
+        }
+        self
+    }
+
     /// Returns the pattern with the entries of both, of the same size; see [`find`](Self::find).
     pub fn joined(&self, other: &Self, most: usize) -> Option<Self> {
         let both = (0..self.starts.len() - 1).map(|j| {

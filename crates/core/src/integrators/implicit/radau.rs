@@ -1,8 +1,8 @@
 //! Radau IIA of order 5 (Hairer, Wanner, *Solving Ordinary Differential Equations II*, 1996, IV.8):
-//! collocation at three nodes; the last node is the end of the step. Any step is stable, and
-//! stiff motion is damped out. The error is estimated by a formula of order 3, whose difference is
-//! filtered by (REAL / h - J)^-1, so that stiff motion does not spoil it. Steps are predicted from
-//! the last two errors (Gustafsson, *Control-theoretic techniques for stepsize selection in
+//! collocation at three nodes; the last node is the end of the step. Any step is stable, and stiff
+//! motion is damped out. The error is estimated by a formula of order 3, whose difference is
+//! filtered by (REAL / h M - J)^-1, so that stiff motion does not spoil it. Steps are predicted
+//! from the last two errors (Gustafsson, *Control-theoretic techniques for stepsize selection in
 //! implicit Runge-Kutta methods*, ACM Trans. Math. Softw. 20, 1994). States within a step are on
 //! the polynomial of collocation, of degree 3. Stiff motion makes the ends of steps far more exact
 //! than that polynomial, which is why its own error counts too.
@@ -13,6 +13,7 @@ use super::super::method::{Create, Method, View};
 use super::super::sweep::add_scaled;
 use super::super::trial::{LastStep, Trial};
 use super::collocation::{Collocation, MAX_ITERATIONS, NODES, ROOT6, STAGES};
+use super::consistent::Consistent;
 use crate::control::Control;
 use crate::error::Error;
 use crate::system::ParticleSystem;
@@ -114,6 +115,10 @@ struct Radau {
     foreseen: Vec<f64>,
     error: Vec<f64>,
     base: Vec<f64>,
+    /// Product of the mass matrix with a displacement.
+    moved: Vec<f64>,
+    /// Beginning of a run with a mass matrix.
+    consistent: Option<Consistent>,
     step: LastStep,
 }
 
@@ -130,6 +135,8 @@ impl Radau {
             foreseen: zeros(),
             error: zeros(),
             base: zeros(),
+            moved: zeros(),
+            consistent: Consistent::of(system),
             step: LastStep::new(system.dim(), FORMED + 1),
         }
     }
@@ -211,7 +218,8 @@ impl Radau {
     fn estimate(&mut self, h: f64, f: &[f64]) -> Work {
         self.error.copy_from_slice(f);
         for (z, weight) in self.equations.stages.iter().zip(ERROR_WEIGHTS) {
-            add_scaled(&mut self.error, weight / h, z);
+            self.equations.jacobian.multiply_mass(z, &mut self.moved);
+            add_scaled(&mut self.error, weight / h, &self.moved);
         }
         self.equations.filter(&mut self.error)
     }
@@ -273,7 +281,9 @@ impl Radau {
 
 impl Trial for Radau {
     fn check(&self, _: &dyn ParticleSystem) -> Result<(), Error> {
-        self.equations.jacobian.check()
+        self.equations.jacobian.check()?;
+        let consistent = self.consistent.as_ref();
+        consistent.map_or(Ok(()), Consistent::check)
     }
 
     fn dim(&self) -> usize {
@@ -296,11 +306,15 @@ impl Trial for Radau {
 
     fn begin(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
         self.step.y0.copy_from_slice(y);
-        system.eval_f(t, y, &mut self.step.k[BEGIN]);
         self.memory = Memory::default();
         self.equations.jacobian.forget();
         (self.is_fresh, self.rejected, self.resumed) = (false, false, false);
-        Work::of(1)
+        let (y0, jacobian) = (&mut self.step.y0, &mut self.equations.jacobian);
+        let begin = |consistent: &mut Consistent| consistent.begin(system, jacobian, t, y0);
+        let mut work = self.consistent.as_mut().map(begin).unwrap_or_default();
+        system.eval_f(t, &self.step.y0, &mut self.step.k[BEGIN]);
+        work += Work::of(1);
+        work
     }
 
     fn start_from_end(&mut self) {
@@ -309,7 +323,13 @@ impl Trial for Radau {
     }
 
     fn derivative(&self, _: &dyn ParticleSystem, out: &mut [f64]) {
-        out.copy_from_slice(&self.step.k[BEGIN]);
+        let rates = self.consistent.as_ref().map(|consistent| &consistent.rates);
+        out.copy_from_slice(rates.unwrap_or(&self.step.k[BEGIN]));
+    }
+
+    fn second_derivative(&self) -> Option<&[f64]> {
+        let consistent = self.consistent.as_ref();
+        consistent.map(|consistent| &*consistent.seconds)
     }
 
     fn attempt(
@@ -321,6 +341,9 @@ impl Trial for Radau {
     ) -> (Work, f64) {
         if std::mem::take(&mut self.resumed) && self.memory.has_jacobian {
             self.equations.form_again(system);
+        }
+        if self.consistent.as_ref().is_some_and(Consistent::has_failed) {
+            return (Work::default(), f64::INFINITY);
         }
         let (mut work, solved) = self.solve(t, norm, MAX_ITERATIONS[0]);
         let mut error = f64::INFINITY;
@@ -426,6 +449,7 @@ impl Integrator for Radau {
     ) -> Result<Work, Error> {
         check_dim(self.dim(), y)?;
         self.begin(system, t, y);
+        self.check(system)?;
         let norm = ErrorNorm {
             system,
             tolerance: FIXED,

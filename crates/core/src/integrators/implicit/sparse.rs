@@ -69,14 +69,14 @@ impl<T: ComplexField<RealField = f64> + Copy> Sparse<T> {
         self.lower.entries.len() + self.upper.entries.len() + self.reciprocals.len()
     }
 
-    /// Factorises `shift` 1 - `scale` J, where J has these values at the entries of a pattern.
-    /// Returns the number of products; `None` if the matrix is singular or not finite.
+    /// Factorises `shift` M - `scale` J, for the entries of M, column by column, or 1, and the values
+    /// of J at the entries of a pattern. Returns the number of products; `None` if the matrix is
+    /// singular or not finite.
     pub fn factorise(
         &mut self,
-        shift: T,
+        (shift, mass): (T, &[(u32, u32, f64)]),
         scale: f64,
-        pattern: &Pattern,
-        values: &[f64],
+        (pattern, values): (&Pattern, &[f64]),
     ) -> Option<usize> {
         self.order.clone_from(&pattern.order);
         self.ranks.fill(NONE);
@@ -90,7 +90,14 @@ impl<T: ComplexField<RealField = f64> + Copy> Sparse<T> {
         let mut products = 0;
         for rank in 0..self.order.len() {
             let j = self.order[rank];
-            self.put(j, shift);
+            let first = mass.partition_point(|(_, column, _)| *column < j);
+            let own = mass[first..].iter();
+            for (row, _, value) in own.take_while(|(_, column, _)| *column == j) {
+                self.put(*row, shift * T::from_real(*value));
+            }
+            if mass.is_empty() {
+                self.put(j, shift);
+            }
             for k in pattern.column(j as usize) {
                 self.put(pattern.rows[k], T::from_real(-scale * values[k]));
             }
