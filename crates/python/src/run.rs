@@ -42,6 +42,8 @@ pub struct Run {
     raised: Raised,
     /// Whether the scene or the method calls functions of Python.
     calls: bool,
+    /// Whether the run goes back in time.
+    is_backward: bool,
 }
 
 impl Run {
@@ -125,6 +127,7 @@ impl Run {
             presentation: opened.setup.presentation.clone(),
             duration: opened.setup.defaults.duration,
             calls: opened.calls || method.is_own(),
+            is_backward: opened.is_backward,
             raised: opened.raised,
         })
     }
@@ -193,15 +196,19 @@ impl Run {
     /// Returns the run as it is now, to continue from with the same bits.
     fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let checkpoint = self.simulation(py)?.checkpoint();
-        let bytes = postcard::to_stdvec(&checkpoint);
+        let bytes = postcard::to_stdvec(&(self.is_backward, checkpoint));
         let bytes = bytes.map_err(|error| wrong(py, error.to_string()))?;
         Ok(PyBytes::new(py, &bytes))
     }
 
     /// Continues from a checkpoint of the same scene.
     fn restore(&self, py: Python<'_>, checkpoint: &[u8]) -> PyResult<()> {
-        let checkpoint: Checkpoint = postcard::from_bytes(checkpoint)
+        let (is_backward, checkpoint): (bool, Checkpoint) = postcard::from_bytes(checkpoint)
             .map_err(|_| wrong(py, "these bytes are not the checkpoint of a run"))?;
+        if is_backward != self.is_backward {
+            let why = "the checkpoint is of a run in the other direction of time";
+            return Err(wrong(py, why));
+        }
         self.change(py, |run| run.restore(&checkpoint))
     }
 

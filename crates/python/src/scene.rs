@@ -155,6 +155,8 @@ pub struct Opened {
     pub setup: Setup,
     /// Whether the scene calls functions of Python.
     pub calls: bool,
+    /// Whether its time is reversed.
+    pub is_backward: bool,
     /// Their exceptions.
     pub raised: Raised,
 }
@@ -177,6 +179,8 @@ impl Opened {
             Ok((kind, text)) => Made::Read(told(py, source(&kind, &text))?),
             Err(_) => Made::Built(Box::new(own_system::scene(&given.source, &raised)?)),
         };
+        let is_backward =
+            matches!(made, Made::Built(_)) && given.source.getattr("_backward")?.extract()?;
         let scene = OpenScene { made, options };
         let mut setup = told(py, py.detach(|| scene.build()))?;
         add_forces(&mut setup.scene, &given.forces, &raised)?;
@@ -184,6 +188,7 @@ impl Opened {
             calls: scene.is_built() || !given.forces.is_empty(),
             scene,
             setup,
+            is_backward,
             raised,
         })
     }
