@@ -34,8 +34,9 @@ pub(crate) fn without_derivative(system: &dyn ParticleSystem) -> Vec<usize> {
         return vec![];
     }
     let mut is_moved = vec![false; system.dim()];
-    mass.iter()
-        .for_each(|(_, k, _)| is_moved[*k as usize] = true);
+    for (_, k, _) in mass {
+        is_moved[*k as usize] = true;
+    }
     let all = is_moved.into_iter().enumerate();
     all.filter_map(|(k, is_moved)| (!is_moved).then_some(k))
         .collect()

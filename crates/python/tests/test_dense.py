@@ -24,11 +24,10 @@ def rk45(name, P):
 
 
 def taylor(f, t, y, h):
-    """A step of Taylor's series of the turn, of order 13, with its polynomial."""
-    matrix, term, terms = np.array([[0.0, 1.0], [-1.0, 0.0]]), y, []
-    f(t, y)
+    """A step of Taylor's series of a linear system without t, of order 13, with its polynomial."""
+    term, terms = y, []
     for j in range(1, 14):
-        term = h / j * matrix @ term
+        term = h / j * f(t, term)
         terms.append(term)
     return [y + sum(terms), terms[-1], *terms]
 

@@ -97,8 +97,7 @@ def test_what_cannot_be_served_is_refused():
         (np.full((3, 3), np.nan), "finite numbers are expected"),
         ([[1j, 0, 0]] * 3, "real numbers are expected"),
         ("heavy", "numbers are expected"),
+        ([0, 0, 0], "the matrix is 0"),
     ]:
         with pytest.raises(a3.InputError, match=f"mass: {why}"):
             a3.System(robertson, [1.0, 0.0, 0.0], mass=mass)
-    with pytest.raises(a3.InputError, match="mass matrix is 0"):
-        a3.Simulation(a3.System(robertson, [1.0, 0.0, 0.0], mass=[0, 0, 0]), "radau")

@@ -13,8 +13,8 @@ use crate::system::ParticleSystem;
 use crate::work::Work;
 
 /// Function that takes a step: from f, t (s), y and h (s), the state at t + h, the estimate of its
-/// error and, if there are more, the coefficients q of the polynomial `y + theta q_1 + theta^2 q_2
-/// + ...` within the step.
+/// error and, if there are more, the coefficients q of the polynomial within the step, y + theta
+/// `q_1` + theta^2 `q_2` + ...
 pub(super) type Estimated =
     dyn Fn(&mut Derivative, f64, &[f64], f64) -> Result<Vec<Vec<f64>>, Error> + Send + Sync;
 

@@ -503,6 +503,8 @@ def _mass_entries(mass: Any, size: int, kind: Type[Any]) -> Sequence[Tuple[int, 
         values = array[rows, columns]
     if shape != (size, size):
         raise InputError(f"mass: a matrix of shape {(size, size)} is expected, not {shape}")
+    if not values.any():
+        raise InputError("mass: the matrix is 0: then no equation has a derivative")
     entries = [(int(i), int(j), value) for i, j, value in zip(rows, columns, values)]
     if kind is not complex:
         return [(i, j, float(value)) for i, j, value in entries]
