@@ -248,7 +248,8 @@ pub struct Simplify {
     FILE-####.obj  one such file for each frame, numbered with as many digits as there are #\n  \
     FILE.pc2       a point cache (PC2), and beside it FILE.obj, the mesh that it moves\n  \
     FILE.glb       glTF 2.0 with a morph target for each frame, at most 600\n  \
-    FILE.usda      Universal Scene Description: meshes, curves and points with time samples\n\n\
+    FILE.usda      Universal Scene Description: meshes, curves and points with time samples\n  \
+    FILE.vtu       the final tetrahedra of solids with their stress, for ParaView; also FILE-####.vtu\n\n\
     Frames are at exactly k / N, from 0 to --until; no step is shortened for them. Particles keep\n\
     their order and numbers in all files. OBJ, PC2, GLB and USD are in single precision. A run that\n\
     blows up or is interrupted leaves no file, except for the finished files of a sequence. In Blender,\n\

@@ -8,7 +8,7 @@ use a3_files::output;
 use a3_files::setup::Run;
 
 use super::geometry::{Export, Job};
-use super::{csv, glb, json, npz, obj, pc2, usd};
+use super::{csv, glb, json, npz, obj, pc2, usd, vtu};
 
 /// Default frames per second.
 const DEFAULT_RATE: f64 = 30.0;
@@ -17,7 +17,7 @@ const DEFAULT_RATE: f64 = 30.0;
 const MAX_SIZES: (f64, f64) = (16.0, 4.0);
 
 /// Endings of the files of all formats.
-const ENDINGS: &[&str] = &["json", "csv", "npz", "obj", "pc2", "glb", "usda"];
+const ENDINGS: &[&str] = &["json", "csv", "npz", "obj", "pc2", "glb", "usda", "vtu"];
 
 /// Checks that the output is standard output or has the ending of a format.
 pub fn check_ending(path: &Path) -> Result<(), Failure> {
@@ -35,10 +35,6 @@ pub fn begin(
     run: &Run,
 ) -> Result<(FrameTimes, Box<dyn Export>), Failure> {
     let (simulation, presentation) = (&run.simulation, &run.presentation);
-    let obj = |files| obj::Obj {
-        presentation: presentation.clone(),
-        files,
-    };
     let until = run.until;
     let last = FrameTimes::new(until, until, DEFAULT_RATE)?;
     if path == Path::new("-") {
@@ -52,14 +48,26 @@ pub fn begin(
     output::check(path, ENDINGS)?;
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     let sequence = Sequence::of(path);
-    let is_obj = ending == "obj" && sequence.is_none();
-    if is_obj && rate.is_some() {
-        return Err(Failure::usage(
-            "an .obj has one frame: leave out --fps, or write a sequence such as cloth-####.obj",
-        ));
-    }
-    if is_obj {
-        return Ok((last, Box::new(obj(obj::Files::One(path.into())))));
+    let of_vtu = if ending == "vtu" {
+        Some(vtu::size(simulation)?)
+    } else {
+        None
+    };
+    let is_single = ending == "obj" || of_vtu.is_some();
+    let single = |files| obj::Frames {
+        presentation: presentation.clone(),
+        files,
+        write: of_vtu.map_or(obj::write, |_| vtu::write),
+    };
+    if is_single && sequence.is_none() {
+        if rate.is_some() {
+            let ending = ending.display();
+            return Err(Failure::usage(format!(
+                "a file .{ending} has one frame: leave out --fps, or write a sequence such as cloth-####.{ending}"
+            )));
+        }
+        check_size(of_vtu.unwrap_or_default(), MAX_SIZES.0)?;
+        return Ok((last, Box::new(single(obj::Files::One(path.into())))));
     }
     if ending == "json" && rate.is_none() {
         return Ok((last, Box::new(json::Json::new(path, false)?)));
@@ -83,9 +91,10 @@ pub fn begin(
             (glb::size(job), MAX_SIZES.1)
         }
         Some("usda") => (usd::size(simulation, several), MAX_SIZES.0),
-        Some("obj") => {
+        Some("obj" | "vtu") => {
             sequence.iter().try_for_each(|it| it.check(all.count))?;
-            (obj::size(job) * count, MAX_SIZES.0)
+            let size = of_vtu.unwrap_or_else(|| obj::size(job));
+            (size * count, MAX_SIZES.0)
         }
         _ => (json::ROW_SIZE * particles * count, MAX_SIZES.0),
     };
@@ -96,7 +105,9 @@ pub fn begin(
         (Some("pc2"), _) => Box::new(pc2::Pc2::new(job)?),
         (Some("glb"), _) => Box::new(glb::Glb::new(job)?),
         (Some("usda"), _) => Box::new(usd::Usd::new(job)?),
-        (Some("obj"), Some(sequence)) => Box::new(obj(obj::Files::Many(sequence, first))),
+        (Some("obj" | "vtu"), Some(sequence)) => {
+            Box::new(single(obj::Files::Many(sequence, first)))
+        }
         _ => Box::new(json::Json::new(path, true)?),
     };
     Ok((several, export))

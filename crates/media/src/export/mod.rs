@@ -9,6 +9,7 @@ mod npz;
 mod obj;
 mod pc2;
 mod usd;
+mod vtu;
 
 pub use begin::{begin, check_ending};
 pub use geometry::Export;

@@ -17,13 +17,14 @@ use a3_scenes::{Presentation, Surface};
 use super::geometry::{Export, Geometry, Job, positions};
 use crate::surfaces::Liquid;
 
-/// OBJ files that are being written.
-pub struct Obj {
+/// Files of a frame each that are being written, by a function for the format.
+pub struct Frames {
     pub presentation: Arc<Presentation>,
     pub files: Files,
+    pub write: fn(&mut dyn Write, &Surface, &Simulation) -> io::Result<()>,
 }
 
-/// One OBJ file of the final state, or a numbered file for each frame.
+/// One file of the final state, or a numbered file for each frame.
 pub enum Files {
     /// The file of the final state.
     One(PathBuf),
@@ -31,7 +32,7 @@ pub enum Files {
     Many(Sequence, usize),
 }
 
-impl Export for Obj {
+impl Export for Frames {
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         let path = match &mut self.files {
             Files::One(path) => path.clone(),
@@ -41,7 +42,7 @@ impl Export for Obj {
             }
         };
         output::write_with(&path, |file| {
-            write(file, &self.presentation.surface, simulation)
+            (self.write)(file, &self.presentation.surface, simulation)
         })
     }
 
@@ -63,7 +64,7 @@ pub fn size(job: Job) -> f64 {
 /// Writes the current state: `v` of all vertices, `vn` and `f` of the surfaces except torn
 /// triangles, and `l` and `p` of particles without a surface. The surface of a fluid is an object
 /// of its own, with vertices after all others.
-fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -> io::Result<()> {
+pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -> io::Result<()> {
     let geometry = Geometry::of(surface, simulation);
     let all: Vec<_> = (0..geometry.vertices as u32).collect();
     let liquid = Liquid::of(simulation, |_| None);

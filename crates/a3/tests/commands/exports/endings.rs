@@ -17,7 +17,7 @@ fn exports_that_cannot_be_are_refused_before_the_work() {
     for (words, says) in [
         (
             long("5x5", "x.txt", &[]),
-            ".json, .csv, .npz, .obj, .pc2, .glb or .usda",
+            ".json, .csv, .npz, .obj, .pc2, .glb, .usda or .vtu",
         ),
         (long("5x5", "-", &["--fps", "25"]), "final state"),
         (long("5x5", "-", &["--summary", "-"]), "not both"),

@@ -9,6 +9,7 @@ mod glb;
 mod meshes;
 mod numbers;
 mod usd;
+mod vtu;
 
 use std::path::Path;
 

@@ -101,6 +101,18 @@ impl Solid {
         })
     }
 
+    /// Returns the stress (Pa) in each tetrahedron at positions x (m) and velocities v (m/s), as the
+    /// deformed body has it, after Cauchy: P F^T / det F, with the first Piola-Kirchhoff stress P.
+    pub fn stresses(&self, x: &[f64], v: &[f64]) -> impl Iterator<Item = Matrix3<f64>> {
+        self.deformed(x).zip(self.deformed(v)).map(|(body, rate)| {
+            let rate = (self.material.damping > 0.0).then_some(&rate.deformation);
+            let stress = self.material.stress(&body.deformation, rate);
+            let of = |rows: &Matrix<f64>| Matrix3::from_fn(|row, column| rows[row][column]);
+            let f = of(&body.deformation);
+            of(&stress) * f.transpose() / f.determinant()
+        })
+    }
+
     /// Returns the neighbours of particle i in tetrahedra, with their distances at rest (m).
     pub(crate) fn neighbours(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
         let each = self
@@ -141,5 +153,45 @@ impl Solid {
                 gradients,
             }
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Hyperelastic;
+    use super::*;
+
+    /// A small stretch by e that narrows by Poisson's ratio needs the stress E e, whichever way the
+    /// body is turned; a rate of stretching adds the damping's share.
+    #[test]
+    fn a_pulled_body_has_the_stress_of_hookes_law() {
+        const E: f64 = 1e-6;
+        let rest = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let rest = rest.map(Vector3::from);
+        for model in [Hyperelastic::NeoHookean, Hyperelastic::StVenantKirchhoff] {
+            let material = Material {
+                model,
+                young: 2e5,
+                poisson: 0.3,
+                damping: 0.5,
+            };
+            let solid = Solid::new(0, &[[0, 1, 2, 3]], &rest, material).unwrap();
+            let turn = nalgebra::Rotation3::from_euler_angles(0.3, -0.7, 1.1);
+            let columns = |place: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| -> Vec<f64> {
+                let places = rest.map(|x| turn * place(&x));
+                (0..12).map(|k| places[k % 4][k / 4]).collect()
+            };
+            let strain = Vector3::new(E, -0.3 * E, -0.3 * E);
+            let x = columns(&|x| x + x.component_mul(&strain));
+            let v = columns(&|x| 3.0 * x.component_mul(&strain));
+            let still = solid.stresses(&x, &[0.0; 12]).next().unwrap();
+            let moving = solid.stresses(&x, &v).next().unwrap();
+            for (stress, value) in [(still, 2e5 * E), (moving, 2e5 * E * (1.0 + 0.5 * 3.0))] {
+                let own = turn.inverse() * stress * turn;
+                let mut expected = Matrix3::zeros();
+                expected[(0, 0)] = value;
+                assert!((own - expected).norm() < 1e-5 * value, "{own} {value}");
+            }
+        }
     }
 }
