@@ -7,8 +7,11 @@ use std::path::{Path, PathBuf};
 /// A module, as its path from the root of the crate.
 type Name = Vec<String>;
 
-/// The modules of a crate with their text.
-pub struct Crate(BTreeMap<Name, String>);
+/// The path of an import, and the name that it gives the item.
+type Import = (Vec<String>, String);
+
+/// The modules of a crate with their texts, and their imports.
+pub struct Crate(BTreeMap<Name, String>, BTreeMap<Name, Vec<Import>>);
 
 impl Crate {
     pub fn read(source: &Path, files: &[PathBuf]) -> Self {
@@ -24,7 +27,14 @@ impl Crate {
             }
             (name, code(&fs::read_to_string(path).unwrap()))
         });
-        Self(modules.collect())
+        Self::of(modules.collect())
+    }
+
+    fn of(modules: BTreeMap<Name, String>) -> Self {
+        let imports = modules.iter();
+        let imports = imports.map(|(name, text)| (name.clone(), paths(text, &["use"])));
+        let imports = imports.collect();
+        Self(modules, imports)
     }
 
     /// Returns the module that defines the item of a path, as seen from another module.
@@ -51,8 +61,7 @@ impl Crate {
         let Some(item) = rest.first().filter(|_| depth < 8) else {
             return Some(at);
         };
-        for exported in paths(&self.0[&at], &["use"]) {
-            let (path, name) = exported;
+        for (path, name) in &self.1[&at] {
             let child = path.first().filter(|first| {
                 let mut child = at.clone();
                 child.push((*first).clone());
@@ -61,12 +70,12 @@ impl Crate {
             if child.is_none() || path.len() < 2 {
                 continue;
             }
-            let target = self.resolve(&at, &path, depth + 1);
+            let target = self.resolve(&at, path, depth + 1);
             let through_glob = name == "*"
                 && target
                     .as_ref()
                     .is_some_and(|target| defines(&self.0[target], item));
-            if name == *item || through_glob {
+            if name == item || through_glob {
                 return target;
             }
         }
@@ -301,7 +310,7 @@ fn circles_are_found() {
         (name, code(text))
     };
     let of = |modules: &[(&str, &str)]| {
-        Crate(
+        Crate::of(
             modules
                 .iter()
                 .map(|(name, text)| module(name, text))
