@@ -293,7 +293,7 @@ fn springs_that_buckle_are_refused() {
 }
 
 /// Costs of iterations, in evaluations of forces spring by spring.
-/// `cargo test -p a3-core --test numerics prices_measured -- --ignored --nocapture`
+/// `cargo test -p a3-core-tests --test numerics prices_measured -- --ignored --nocapture`
 #[test]
 #[ignore = "measures"]
 fn prices_measured() {

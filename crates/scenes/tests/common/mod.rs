@@ -6,7 +6,7 @@ use a3_core::{Control, Scene, Simulation, integrators};
 /// Reads a file of the seeds of the fuzzer.
 pub fn seed(name: &str) -> Vec<u8> {
     std::fs::read(format!(
-        "{}/../../fuzz/seeds/{name}",
+        "{}/../../../fuzz/seeds/{name}",
         env!("CARGO_MANIFEST_DIR")
     ))
     .unwrap()

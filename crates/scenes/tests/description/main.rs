@@ -11,11 +11,13 @@ mod joints;
 mod json;
 mod masses;
 mod materials;
+mod parts;
+mod resolution;
 mod solids;
 mod words;
 
 use a3_core::{Grid, Network, Scene};
-use a3_scenes::{Description, Fault, Mesh, Places, Setup, find, parse_toml};
+use a3_scenes::{Description, Fault, Mesh, Places, Setup, find, nearest, parse_toml};
 
 use common::{begins, random, refused, run, seed};
 

@@ -96,3 +96,21 @@ fn numbers_are_read_as_toml_writes_them() {
         assert!(*text != CLOTH && build(text).is_ok(), "{text}");
     }
 }
+
+#[test]
+fn slips_capitals_and_beginnings_are_understood() {
+    let names = ["simulate", "simple", "scenes", "t"];
+    for (word, meant) in [
+        ("simulte", Some("simulate")),
+        ("simualte", Some("simulate")),
+        ("SCENES", Some("scenes")),
+        ("sim", Some("simulate")),
+        ("T", Some("t")),
+        ("s", None),
+        ("rug", None),
+        ("", None),
+    ] {
+        assert_eq!(nearest(word, names), meant, "{word}");
+    }
+    assert_eq!(nearest(&"simulate".repeat(100_000), names), None);
+}

@@ -14,7 +14,7 @@ use common::{begins, random, refused};
 
 /// Reads a file of these tests.
 fn data(name: &str) -> Vec<u8> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/files/data");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/files/data");
     std::fs::read(format!("{folder}/{name}")).unwrap()
 }
 

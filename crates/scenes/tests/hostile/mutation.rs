@@ -12,7 +12,10 @@ const WORDS: [&str; 31] = [
 
 /// Reads the files of a folder of seeds, in the order of their names.
 pub fn seeds(folder: &str) -> Vec<Vec<u8>> {
-    let folder = format!("{}/../../fuzz/seeds/{folder}", env!("CARGO_MANIFEST_DIR"));
+    let folder = format!(
+        "{}/../../../fuzz/seeds/{folder}",
+        env!("CARGO_MANIFEST_DIR")
+    );
     let files = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path());

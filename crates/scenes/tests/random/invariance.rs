@@ -45,7 +45,7 @@ const LEFT_OUT: &[(&str, &[&str], &str)] = &[
 ];
 const ORDER: &str = "impacts of many bodies depend on their order";
 
-const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes");
+const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/scenes");
 
 /// Scene with its name.
 type Named = (String, Value);

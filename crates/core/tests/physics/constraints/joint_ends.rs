@@ -249,7 +249,10 @@ fn every_method_holds_joints_or_refuses_them() {
 /// and the energy never grows.
 #[test]
 fn impacts_end_where_joints_end() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/doll.toml");
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../../docs/scenes/doll.toml"
+    );
     let doll = std::fs::read_to_string(path).unwrap();
     let doll = doll.replace(
         "axis = [1, 0, 0] }",
