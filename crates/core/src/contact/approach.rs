@@ -298,7 +298,7 @@ mod tests {
             if approach.separation(0.0).distance < 1e-6 {
                 continue;
             }
-            let samples = 20_000;
+            let samples = 4_000;
             let share = |k: u32| f64::from(k) / f64::from(samples);
             let sampled = (0..=samples).find(|k| approach.separation(share(*k)).distance < -1e-9);
             let found = approach.first(0.0, 0.0);

@@ -84,8 +84,8 @@ fn compare(name: &str, scene: &Scene) -> (usize, Vec<String>) {
 /// resonance with the turning of a body. A search may meet one or not: at most one in a hundred.
 #[test]
 fn limits_at_rest_are_seen_within_three_percent() {
-    let nets = (0..12).map(|seed| (format!("net {seed}"), net(seed)));
-    let boxes = (0..20).map(|seed| (format!("box {seed}"), box_on_springs(seed)));
+    let nets = (0..6).map(|seed| (format!("net {seed}"), net(seed)));
+    let boxes = (0..10).map(|seed| (format!("box {seed}"), box_on_springs(seed)));
     let found = Mutex::new((0, vec![]));
     on_all_cores(nets.chain(boxes), |(name, scene)| {
         let (agree, others) = compare(&name, &scene);
@@ -95,7 +95,7 @@ fn limits_at_rest_are_seen_within_three_percent() {
     });
     let (agree, others) = found.into_inner().unwrap();
     assert!(
-        agree > 150 && 100 * others.len() <= 100 + agree,
+        agree > 75 && 100 * others.len() <= 100 + agree,
         "{others:?}"
     );
 }

@@ -40,10 +40,10 @@ fn it_hangs_without_sagging() {
     );
 }
 
-/// The cloth survives ten simulated minutes of swing, wind, and pulls at any particle in all
+/// The cloth survives three simulated minutes of swing, wind, and pulls at any particle in all
 /// directions, as far as a window shows.
 #[test]
-fn ten_minutes_of_swing_wind_and_pulling() {
+fn three_minutes_of_swing_wind_and_pulling() {
     let mut run = simulation("cloth", "trapezoid", 0.01);
     run.set_wind(true);
     run.set_swinging(true);
@@ -55,7 +55,7 @@ fn ten_minutes_of_swing_wind_and_pulling() {
         (seed >> 11) as f64 / (1u64 << 53) as f64
     };
     let mut target = Vector3::zeros();
-    let worst = worst_stretch(&mut run, 600.0, |run, frame| {
+    let worst = worst_stretch(&mut run, 180.0, |run, frame| {
         match frame % 120 {
             0 => run.grab((random() * 400.0) as usize).unwrap(),
             90 => run.release(),

@@ -84,7 +84,7 @@ fn grids_that_make_no_sense_are_refused() {
     assert!(a3_scenes::find("chain").unwrap().build(Some(grid)).is_err());
 }
 
-/// With its default step, each method is stable on each scene that it supports, for 10 s of wind
+/// With its default step, each method is stable on each scene that it supports, for 5 s of wind
 /// and swing, or for less where that would take minutes.
 #[test]
 fn default_controls_hold_everywhere() {
@@ -106,7 +106,7 @@ fn default_controls_hold_everywhere() {
                 "cantilever" => 1.0,
                 "drop" | "dam-break" => 0.3,
                 "boxes" | "dominoes" | "ball-on-cloth" => 0.02,
-                _ => 10.0,
+                _ => 5.0,
             };
             run.advance_to(end)
                 .unwrap_or_else(|e| panic!("{} on {}: {e}", method.name, entry.name));
@@ -140,7 +140,7 @@ fn default_controls_hold_on_other_grids() {
                 Control::Tolerance(_) => method.default_control,
             };
             let mut run = Simulation::new(setup.scene, method, control).unwrap();
-            run.advance_to(2.0)
+            run.advance_to(1.0)
                 .unwrap_or_else(|e| panic!("{} on {rows}x{cols}: {e}", method.name));
             assert!(
                 run.largest_stretch().unwrap() < 2.5,
