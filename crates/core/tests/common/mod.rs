@@ -3,10 +3,11 @@
 
 use std::sync::Mutex;
 
+use a3_core::accuracy::{Errors, Frames, Reference, measure};
 use a3_core::integrators;
 use a3_core::{
-    Grid, Method, Network, ParticleSystem, Path, Scene, Simulation, Spring, SpringKind, SpringLaw,
-    Vector3,
+    Control, Grid, Method, Network, ParticleSystem, Path, Scene, Simulation, Spring, SpringKind,
+    SpringLaw, Vector3,
 };
 
 pub fn method(name: &str) -> &'static Method {
@@ -94,22 +95,40 @@ pub fn integrate(
     y
 }
 
-/// Linear oscillator of angular frequency `omega` (rad/s) and damping ratio `zeta`: particle 1, of
-/// 1 kg, on a spring of rest length 0 that is pinned at the origin, with viscous drag.
-pub fn oscillator(omega: f64, zeta: f64) -> Network {
+/// Structural spring of a stiffness (N/m), a rest length (m) and a damping (N s/m).
+pub fn spring(i: usize, j: usize, [stiffness, rest_length, damping]: [f64; 3]) -> Spring {
+    let law = SpringLaw::new(stiffness, rest_length, damping).unwrap();
+    let kind = SpringKind::Structural;
+    Spring { kind, i, j, law }
+}
+
+/// Particle of 1 kg, number 1, on a spring of rest length 0 that is pinned at the origin, with an
+/// angular frequency `omega` (rad/s) and this damping (N s/m).
+pub fn damped_spring(omega: f64, damping: f64) -> Network {
     let mut network = Network::new(vec![1.0; 2]).unwrap();
-    let law = SpringLaw::new(omega * omega, 0.0, 0.0).unwrap();
-    network
-        .add_spring(Spring {
-            kind: SpringKind::Structural,
-            i: 0,
-            j: 1,
-            law,
-        })
-        .unwrap();
+    let spring = spring(0, 1, [omega * omega, 0.0, damping]);
+    network.add_spring(spring).unwrap();
     network.pin(0, Path::Still(Vector3::zeros())).unwrap();
+    network
+}
+
+/// Linear oscillator of angular frequency `omega` (rad/s) and damping ratio `zeta`, by viscous drag.
+pub fn oscillator(omega: f64, zeta: f64) -> Network {
+    let mut network = damped_spring(omega, 0.0);
     network.set_drag(2.0 * zeta * omega).unwrap();
     network
+}
+
+/// Finest reference of a scene until a time (s).
+pub fn reference(scene: &Scene, until: f64) -> Reference {
+    let found = Reference::finest(scene, Frames::new(until), &|| true);
+    found.unwrap().unwrap()
+}
+
+/// Errors of a run against a reference.
+pub fn errors(scene: &Scene, name: &str, control: Control, reference: &Reference) -> Errors {
+    let outcome = measure(scene, method(name), control, reference, &|| true);
+    outcome.unwrap().unwrap().errors
 }
 
 /// Largest magnitude of a number in y; infinite if one of them is NaN.

@@ -4,7 +4,7 @@
 use std::cell::Cell;
 use std::time::Duration;
 
-use crate::common::{method, scene};
+use crate::common::{errors, method, reference, scene};
 use a3_core::accuracy::{
     Frames, Metric, Precision, Reference, Scope, choose, horizon, ladder, measure, measure_by,
 };
@@ -12,12 +12,6 @@ use a3_core::stability::{Mode, spectrum};
 use a3_core::{Control, Scene, integrators};
 
 const GO_ON: &dyn Fn() -> bool = &|| true;
-
-fn reference(scene: &Scene, until: f64) -> Reference {
-    Reference::finest(scene, Frames::new(until), GO_ON)
-        .unwrap()
-        .unwrap()
-}
 
 fn within(scene: &Scene, until: f64, scope: Scope) -> Reference {
     let precision = Precision::FINEST;
@@ -99,8 +93,7 @@ fn errors_are_of_what_was_asked_for() {
     let circle = scene("simple");
     let reference = reference(&circle, 5.0);
     let run = |reference: &Reference, scene: &Scene, name: &str, h: f64| {
-        let outcome = measure(scene, method(name), Control::Step(h), reference, GO_ON);
-        outcome.unwrap().unwrap().errors
+        errors(scene, name, Control::Step(h), reference)
     };
     // The phase of Runge-Kutta on the circle lags by h^4 / 120 of the time.
     let errors = run(&reference, &circle, "rk4", 0.1);
@@ -299,7 +292,7 @@ fn a_run_can_be_stopped() {
 }
 
 /// The least work of all runs that meet the error and cost less than `most`: of adaptive methods at
-/// thirty tolerances, of others at numbers of steps a fiftieth apart.
+/// twenty tolerances, of others at numbers of steps a twentieth apart.
 fn search(scene: &Scene, reference: &Reference, error: f64, most: f64) -> f64 {
     let mut best = most;
     let run = |m, control, best: &mut f64| {
@@ -314,8 +307,8 @@ fn search(scene: &Scene, reference: &Reference, error: f64, most: f64) -> f64 {
     let all = integrators::METHODS.iter();
     for m in all.filter(|m| m.check(scene.model.system()).is_ok()) {
         if m.is_adaptive() {
-            for k in 0..30 {
-                let tolerance = 10f64.powf(-1.0 - 10.0 * f64::from(k) / 29.0);
+            for k in 0..20 {
+                let tolerance = 10f64.powf(-1.0 - 10.0 * f64::from(k) / 19.0);
                 if run(m, Control::Tolerance(tolerance), &mut best) > best {
                     break;
                 }
@@ -328,7 +321,7 @@ fn search(scene: &Scene, reference: &Reference, error: f64, most: f64) -> f64 {
                 if run(m, control, &mut best) > 2.0 * best {
                     break;
                 }
-                count += 1 + count / 50;
+                count += 1 + count / 20;
             }
         }
     }

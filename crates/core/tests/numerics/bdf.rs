@@ -1,20 +1,16 @@
 //! BDF: work and errors on a stiff chain, errors that follow the tolerance, orders that rise to the
 //! highest, and stiff motion that dies out.
 
-use crate::common::{method, oscillator, scene, size};
+use crate::common::{method, oscillator, scene, size, spring};
 use a3_core::integrators::Tolerance;
-use a3_core::{
-    Control, Model, Network, ParticleSystem, Path, Scene, Simulation, Spring, SpringKind,
-    SpringLaw, Vector3,
-};
+use a3_core::{Control, Model, Network, ParticleSystem, Path, Scene, Simulation, Vector3};
 
 /// A chain of four springs on a pin, so damped that its fastest motion decays 1100 times a second.
 fn overdamped_chain() -> Scene {
     let mut network = Network::new(vec![0.05; 5]).unwrap();
-    let law = SpringLaw::new(40.0, 0.25, 14.0).unwrap();
     for i in 0..4 {
-        let (kind, j) = (SpringKind::Structural, i + 1);
-        network.add_spring(Spring { kind, i, j, law }).unwrap();
+        let spring = spring(i, i + 1, [40.0, 0.25, 14.0]);
+        network.add_spring(spring).unwrap();
     }
     network.pin(0, Path::Still(Vector3::zeros())).unwrap();
     network.set_gravity(Vector3::new(0.0, -9.81, 0.0));

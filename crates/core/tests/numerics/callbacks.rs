@@ -3,21 +3,11 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use crate::own::{plus, rotation};
 use a3_core::accuracy::{Frames, Reference, horizon};
 use a3_core::integrators::METHODS;
 use a3_core::stability::{Budget, Motion};
 use a3_core::{Cause, Control, Error, Method, Ode, Scene, Simulation};
-
-/// y + a k.
-fn plus(y: &[f64], a: f64, k: &[f64]) -> Vec<f64> {
-    y.iter().zip(k).map(|(y, k)| y + a * k).collect()
-}
-
-/// A rotation y' = (-y2, y1) from (1, 0).
-fn rotation() -> Scene {
-    let f = |_t: f64, y: &[f64], dydt: &mut [f64]| dydt.copy_from_slice(&[-y[1], y[0]]);
-    Scene::new("rotation", Ode::new(2, f).unwrap(), vec![1.0, 0.0])
-}
 
 /// A decay whose f fails from a time on.
 fn failing(calls: &Arc<AtomicUsize>) -> Scene {
@@ -69,7 +59,7 @@ fn a_failure_of_f_ends_a_run_with_its_own_words() {
 
 #[test]
 fn a_failure_of_a_step_ends_a_run_with_its_own_words() {
-    let scene = rotation();
+    let scene = rotation(1.0);
     let failing = Method::from_step("own-failing", 1, |f, t, y, h| {
         if t > 0.3 {
             return Err(Error::Callback("the step gave up".into()));

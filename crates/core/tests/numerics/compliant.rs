@@ -4,24 +4,15 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use crate::common::{distance, integrate, method, scene, scene_with_grid, size};
+use crate::common::{distance, integrate, method, scene, scene_with_grid, size, spring};
 use a3_core::elements::{Buckling, Springs};
 use a3_core::{
-    Compliant, Error, Grid, Mechanics, Method, Network, Path, Place, Refusal, Sheet, Spring,
-    SpringKind, SpringLaw, Vector3, integrators,
+    Compliant, Error, Grid, Mechanics, Method, Network, Path, Place, Refusal, Sheet, SpringLaw,
+    Vector3, integrators,
 };
 
 fn methods() -> impl Iterator<Item = &'static Method> {
     integrators::METHODS.iter().filter(|m| m.needs_springs())
-}
-
-fn spring(i: usize, j: usize, [stiffness, rest_length, damping]: [f64; 3]) -> Spring {
-    Spring {
-        kind: SpringKind::Structural,
-        i,
-        j,
-        law: SpringLaw::new(stiffness, rest_length, damping).unwrap(),
-    }
 }
 
 /// Numbers between -1 and 1 that a seed determines.

@@ -2,31 +2,11 @@
 //! is damped.
 
 use a3_core::stability::{Growth, Mode};
-use a3_core::{
-    Control, Network, Path, Simulation, Spring, SpringKind, SpringLaw, Vector3, integrators,
-};
+use a3_core::{Control, Simulation};
 
-use crate::common::{ellipse, integrate, method, scene};
+use crate::common::{damped_spring, ellipse, integrate, method, scene};
 
 const METHOD: &str = "implicit-damping";
-
-/// A particle of 1 kg on a damped spring of rest length 0, with angular frequency `omega` (rad/s)
-/// and damping ratio `zeta`.
-fn damped(omega: f64, zeta: f64) -> Network {
-    let mut network = Network::new(vec![1.0; 2]).unwrap();
-    let law = SpringLaw::new(omega * omega, 0.0, 2.0 * zeta * omega).unwrap();
-    let kind = SpringKind::Structural;
-    network
-        .add_spring(Spring {
-            kind,
-            i: 0,
-            j: 1,
-            law,
-        })
-        .unwrap();
-    network.pin(0, Path::Still(Vector3::zeros())).unwrap();
-    network
-}
 
 /// The displacement after t of an oscillator that is released at 1.
 fn released(omega: f64, zeta: f64, t: f64) -> f64 {
@@ -44,13 +24,8 @@ fn released(omega: f64, zeta: f64, t: f64) -> f64 {
 fn error(omega: f64, zeta: f64, end: f64, steps: u64) -> f64 {
     let mut y = vec![0.0; 12];
     y[1] = 1.0;
-    let y = integrate(
-        &damped(omega, zeta),
-        method(METHOD),
-        &y,
-        end / steps as f64,
-        steps,
-    );
+    let network = damped_spring(omega, 2.0 * zeta * omega);
+    let y = integrate(&network, method(METHOD), &y, end / steps as f64, steps);
     (y[1] - released(omega, zeta, end)).abs()
 }
 
@@ -112,8 +87,8 @@ fn the_limit_is_that_of_its_stability_function() {
 #[test]
 fn without_damping_it_is_verlet() {
     for scene in [scene("mit"), scene("pendulum"), ellipse()] {
-        let [own, other] = [METHOD, "verlet"].map(|method| {
-            let method = integrators::find(method).unwrap();
+        let [own, other] = [METHOD, "verlet"].map(|name| {
+            let method = method(name);
             let mut run = Simulation::new(scene.clone(), method, Control::Step(2e-3)).unwrap();
             run.take_steps(20).unwrap();
             (run.state().to_vec(), run.work())

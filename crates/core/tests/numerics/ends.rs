@@ -1,8 +1,7 @@
 //! States that errors are taken from: the ends of steps that are longer than the fastest motion,
 //! and a reference that is known until an impact.
 
-use crate::common::{described, method};
-use a3_core::accuracy::{Frames, Reference, measure};
+use crate::common::{described, errors, method, reference};
 use a3_core::{Control, Simulation};
 
 /// The fastest motion takes a hundredth of a step. The method determines only the ends of steps: no
@@ -13,13 +12,10 @@ fn errors_are_those_at_the_ends_of_steps() {
         "gravity = [0, -9.81, 0]\ndrag = 0.05\n[[chain]]\nparticles = 5\nfrom = [0, 0, 0]\n\
          to = [1.2, 0, 0]\nmass = 0.1\nstiffness = 1e6\npin = [{ at = [\"first\"] }]\n",
     );
-    let go_on = &|| true;
-    let reference = Reference::finest(&stiff, Frames::new(1.0), go_on);
-    let reference = reference.unwrap().unwrap();
+    let reference = reference(&stiff, 1.0);
     for (name, h) in [("implicit-midpoint", 1.0 / 100.0), ("tr-bdf2", 1.0 / 20.0)] {
         let control = Control::Step(h);
-        let outcome = measure(&stiff, method(name), control, &reference, go_on);
-        let found = outcome.unwrap().unwrap().errors.position;
+        let found = errors(&stiff, name, control, &reference).position;
         let mut run = Simulation::new(stiff.clone(), method(name), control).unwrap();
         let accurate = Control::Tolerance(1e-10);
         let mut exact = Simulation::new(stiff.clone(), method("dop853"), accurate).unwrap();
@@ -45,19 +41,8 @@ fn steps_that_skip_the_motion_are_not_accurate() {
         "gravity = [0, -9.81, 0]\ndrag = 2\n[[chain]]\nparticles = 4\nfrom = [0, 0, 0]\n\
          to = [0.9, 0, 0]\nmass = 0.1\nstiffness = 100\npin = [{ at = [\"first\"] }]\n",
     );
-    let frames = Frames::new(20.0);
-    let reference = Reference::finest(&damped, frames, &|| true);
-    let reference = reference.unwrap().unwrap();
-    let error = |h: f64| {
-        let outcome = measure(
-            &damped,
-            method("tr-bdf2"),
-            Control::Step(h),
-            &reference,
-            &|| true,
-        );
-        outcome.unwrap().unwrap().errors.position
-    };
+    let reference = reference(&damped, 20.0);
+    let error = |h: f64| errors(&damped, "tr-bdf2", Control::Step(h), &reference).position;
     assert!(error(10.0) > 0.05 * reference.still.position);
     assert!(error(0.05) < 0.01 * reference.still.position);
 }
@@ -69,8 +54,7 @@ fn a_reference_says_until_when_it_is_clear() {
         "gravity = [0, -9.81, 0]\n[[sphere]]\ncenter = [0, -2, 0]\nradius = 2\n[[jelly]]\ngrid = [4, 4, 4]\nsize = [0.3, 0.3, 0.3]\n\
          at = [0, 0.25, 0]\nmass = 0.01\nstiffness = [40, 20, 10]\n",
     );
-    let reference = Reference::finest(&fall, Frames::new(0.3), &|| true);
-    let reference = reference.unwrap().unwrap();
+    let reference = reference(&fall, 0.3);
     let (until, known) = reference.clear_until().unwrap();
     let impact = f64::sqrt(2.0 * 0.1 / 9.81);
     assert!((until - impact).abs() < 1.0 / 60.0, "{until} {impact}");

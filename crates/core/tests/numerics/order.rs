@@ -1,10 +1,8 @@
 //! Orders of convergence: the global error falls as h to the method's order, with gravity, drag,
 //! damped springs and a moving pin.
 
-use crate::common::{described, distance, integrate, method};
-use a3_core::{
-    Grid, Method, Network, Path, Sheet, Spring, SpringKind, SpringLaw, Turn, Vector3, integrators,
-};
+use crate::common::{described, distance, integrate, method, spring};
+use a3_core::{Grid, Method, Network, Path, Sheet, Turn, Vector3, integrators};
 
 /// An oscillation, and a rotation about a moving axis.
 fn paths() -> [Path; 2] {
@@ -33,15 +31,8 @@ fn paths() -> [Path; 2] {
 fn network(spring_damping: f64, path: Path) -> Network {
     let mut network = Network::new(vec![1.0, 0.7, 1.3]).unwrap();
     for (i, j, k) in [(0, 1, 20.0), (1, 2, 30.0)] {
-        let law = SpringLaw::new(k, 0.8, spring_damping).unwrap();
-        network
-            .add_spring(Spring {
-                kind: SpringKind::Structural,
-                i,
-                j,
-                law,
-            })
-            .unwrap();
+        let spring = spring(i, j, [k, 0.8, spring_damping]);
+        network.add_spring(spring).unwrap();
     }
     network.pin(0, path).unwrap();
     network.set_gravity(Vector3::new(0.0, -9.81, 0.0));

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use approx::assert_relative_eq;
 
-use crate::common::method;
+use crate::common::{method, reference};
 use a3_core::accuracy::{Frames, Metric, Reference, choose_among, measure};
 use a3_core::integrators::{METHODS, View, find};
 use a3_core::stability::{largest_step, spectrum};
@@ -16,7 +16,7 @@ use a3_core::{
 };
 
 /// y + a k.
-fn plus(y: &[f64], a: f64, k: &[f64]) -> Vec<f64> {
+pub fn plus(y: &[f64], a: f64, k: &[f64]) -> Vec<f64> {
     y.iter().zip(k).map(|(y, k)| y + a * k).collect()
 }
 
@@ -42,7 +42,7 @@ fn euler(name: &str) -> Method {
 }
 
 /// A rotation y' = (-w y2, w y1) from (1, 0).
-fn rotation(w: f64) -> Scene {
+pub fn rotation(w: f64) -> Scene {
     let f = move |_t: f64, y: &[f64], dydt: &mut [f64]| {
         dydt.copy_from_slice(&[-w * y[1], w * y[0]]);
     };
@@ -408,9 +408,7 @@ fn own_methods_are_measured_and_chosen() {
     let heun = heun.unwrap().register();
     let scene = rotation(2.0);
     let go_on = || true;
-    let reference = Reference::finest(&scene, Frames::new(1.0), &go_on)
-        .unwrap()
-        .unwrap();
+    let reference = reference(&scene, 1.0);
     let error = |step: f64| {
         let outcome = measure(&scene, heun, Control::Step(step), &reference, &go_on);
         outcome.unwrap().unwrap().errors.state

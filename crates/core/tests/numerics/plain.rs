@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use approx::assert_relative_eq;
 
-use crate::common::method;
-use a3_core::accuracy::{Frames, Metric, Precision, Reference, Scope, choose, horizon, measure};
+use crate::common::{errors, method, reference};
+use a3_core::accuracy::{Frames, Metric, Precision, Reference, Scope, choose, horizon};
 use a3_core::stability::{Budget, Motion, largest_step, spectrum};
 use a3_core::{
     Cause, Control, Error, Mechanics, Model, Ode, ParticleSystem, Refusal, Scene, Simulation,
@@ -55,21 +55,13 @@ fn rms(a: &[f64], b: &[f64]) -> f64 {
     (squares.sum::<f64>() / a.len() as f64).sqrt()
 }
 
-fn reference(scene: &Scene, until: f64) -> Reference {
-    Reference::finest(scene, Frames::new(until), &|| true)
-        .unwrap()
-        .unwrap()
-}
-
 #[test]
 fn the_error_of_a_decay_is_that_of_powers() {
     let (rate, h) = (3.0, 1.0 / 240.0);
     let scene = decay(rate);
     let reference = reference(&scene, 1.0);
     assert!(reference.floor.state < 1e-12, "{:?}", reference.floor);
-    let control = Control::Step(h);
-    let outcome = measure(&scene, method("euler"), control, &reference, &|| true);
-    let errors = outcome.unwrap().unwrap().errors;
+    let errors = errors(&scene, "euler", Control::Step(h), &reference);
     let error = |k: i32| (-rate * f64::from(k) / 60.0).exp() - (1.0 - rate * h).powi(4 * k);
     let largest = (1..=60).map(error).fold(0.0, f64::max);
     assert_relative_eq!(errors.state, largest, max_relative = 1e-9);
@@ -126,7 +118,6 @@ fn a_planar_orbit_closes() {
     }
     for steps in [256.0, 1024.0] {
         let control = Control::Step(TAU / steps);
-        let outcome = measure(&kepler(), method("rk4"), control, &reference, &|| true);
         let mut run = Simulation::new(kepler(), method("rk4"), control).unwrap();
         run.take_steps(steps as u64).unwrap();
         // Errors are over the largest size of each number, here at the frames.
@@ -137,7 +128,7 @@ fn a_planar_orbit_closes() {
                 .collect::<Vec<_>>()
         };
         let own = rms(&over(run.state()), &over(&start));
-        let found = outcome.unwrap().unwrap().errors.state;
+        let found = errors(&kepler(), "rk4", control, &reference).state;
         // The sizes are as exact as the run that they are seen in.
         let close = 2.0 * reference.floor.state;
         assert_relative_eq!(found, own, epsilon = close, max_relative = 1e-3);
@@ -176,32 +167,11 @@ fn the_phase_of_a_rotation_is_its_angle() {
     let scene = scene(turn, vec![1.0, 0.0]);
     let reference = reference(&scene, 1.0);
     let h = 1.0 / 60.0;
-    let control = Control::Step(h);
-    let outcome = measure(&scene, method("euler"), control, &reference, &|| true);
-    let errors = outcome.unwrap().unwrap().errors;
+    let errors = errors(&scene, "euler", Control::Step(h), &reference);
     // A step of Euler's method multiplies by 1 + i h.
     let (stretched, turned) = (1.0f64.hypot(h).powi(60), 60.0 * h.atan());
     let phase = stretched * (1.0 - turned).sin();
     assert_relative_eq!(errors.phase, phase, max_relative = 1e-9);
-}
-
-#[test]
-fn predators_and_prey_keep_their_invariant() {
-    let f = |_, y: &[f64], dydt: &mut [f64]| {
-        dydt[0] = y[0] * (2.0 / 3.0 - 4.0 / 3.0 * y[1]);
-        dydt[1] = y[1] * (y[0] - 1.0);
-    };
-    let invariant = |y: &[f64]| y[0] - y[0].ln() + 4.0 / 3.0 * y[1] - 2.0 / 3.0 * y[1].ln();
-    let scene = scene(f, vec![0.9, 0.9]);
-    let mut run = Simulation::new(scene, method("dop853"), Control::Tolerance(1e-11)).unwrap();
-    for second in 1..=30 {
-        run.advance_to(f64::from(second)).unwrap();
-        assert_relative_eq!(
-            invariant(run.state()),
-            invariant(&[0.9, 0.9]),
-            max_relative = 1e-9
-        );
-    }
 }
 
 #[test]
@@ -377,10 +347,7 @@ fn own_forces_and_masses_have_particles() {
     let reference = reference(&scene, 1.0);
     assert!(reference.floor.position < 1e-12);
     for (name, order) in [("verlet", 2.0), ("rk4", 4.0), ("implicit", 1.0)] {
-        let error = |h: f64| {
-            let outcome = measure(&scene, method(name), Control::Step(h), &reference, &|| true);
-            outcome.unwrap().unwrap().errors.position
-        };
+        let error = |h: f64| errors(&scene, name, Control::Step(h), &reference).position;
         let (coarse, fine) = (error(1.0 / 120.0), error(1.0 / 240.0));
         assert!(((coarse / fine).log2() - order).abs() < 0.1, "{name}");
     }

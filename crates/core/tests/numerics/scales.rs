@@ -2,27 +2,15 @@
 //! two of the first, the motion has the same bits.
 
 use crate::common::{described, method, size};
+use crate::mixed::Numbers;
 use a3_core::integrators::METHODS;
 use a3_core::{Control, Method, Scene, Simulation};
-
-/// Deterministic numbers from -1 to 1.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 /// A net of nine particles at random places, on a rough floor, in a unit of length that is the
 /// fraction `unit` of a metre, around a point (m).
 fn net(seed: u64, unit: f64, around: f64) -> Scene {
     let mut random = Numbers(seed);
-    let mut next = |scale: f64| scale * random.next();
+    let mut next = |scale: f64| scale * random.between(-1.0, 1.0);
     let positions: Vec<_> = (0..9)
         .map(|i| {
             let (row, col) = (f64::from(i / 3), f64::from(i % 3));

@@ -1,8 +1,24 @@
 //! Exact growth factors and stability limits; each limit is tested from both sides.
 
-use crate::common::{integrate, method, oscillator, scene, size};
-use a3_core::{Network, Path, Spring, SpringKind, SpringLaw, Vector3};
+use crate::common::{damped_spring, integrate, method, oscillator, scene, size};
+use a3_core::Network;
 use approx::assert_relative_eq;
+
+/// Damping ratios of `DAMPED_LIMITS`.
+pub const ZETAS: [f64; 5] = [0.01, 0.1, 0.5, 1.0, 2.0];
+
+/// Largest stable h w of methods on an oscillator with drag, for each of these damping ratios.
+#[rustfmt::skip]
+pub const DAMPED_LIMITS: [(&str, [f64; 5]); 8] = [
+    ("euler", [0.020_000, 0.200_000, 1.000_000, 2.000_000, 0.535_898]),
+    ("trapezoid", [0.444_003, 1.049_755, 2.000_000, 2.000_000, 0.535_898]),
+    ("midpoint", [0.444_003, 1.049_755, 2.000_000, 2.000_000, 0.535_898]),
+    ("rk4", [2.848_570, 2.950_853, 2.622_542, 2.785_294, 0.746_317]),
+    ("dopri5", [1.872_130, 2.681_407, 3.398_992, 3.306_568, 0.885_992]),
+    ("dop853", [6.031_695, 6.281_012, 6.765_937, 6.393_652, 1.713_174]),
+    ("symplectic", [1.980_100, 1.809_975, 1.236_068, 0.828_427, 0.472_136]),
+    ("verlet", [2.000_133, 2.013_432, 2.399_357, 4.002_670, 8.000_000]),
+];
 
 /// Growth of the radius in one step of h on the circle f = (-y, x, 0).
 fn growth(name: &str, h: f64) -> f64 {
@@ -110,42 +126,8 @@ fn methods_without_an_undamped_limit_always_grow() {
 
 #[test]
 fn damped_limits() {
-    let zetas = [0.01, 0.1, 0.5, 1.0, 2.0];
-    for (name, limits) in [
-        (
-            "euler",
-            [0.020_000, 0.200_000, 1.000_000, 2.000_000, 0.535_898],
-        ),
-        (
-            "trapezoid",
-            [0.444_003, 1.049_755, 2.000_000, 2.000_000, 0.535_898],
-        ),
-        (
-            "midpoint",
-            [0.444_003, 1.049_755, 2.000_000, 2.000_000, 0.535_898],
-        ),
-        (
-            "rk4",
-            [2.848_570, 2.950_853, 2.622_542, 2.785_294, 0.746_317],
-        ),
-        (
-            "dopri5",
-            [1.872_130, 2.681_407, 3.398_992, 3.306_568, 0.885_992],
-        ),
-        (
-            "dop853",
-            [6.031_695, 6.281_012, 6.765_937, 6.393_652, 1.713_174],
-        ),
-        (
-            "symplectic",
-            [1.980_100, 1.809_975, 1.236_068, 0.828_427, 0.472_136],
-        ),
-        (
-            "verlet",
-            [2.000_133, 2.013_432, 2.399_357, 4.002_670, 8.000_000],
-        ),
-    ] {
-        for (zeta, limit) in zetas.into_iter().zip(limits) {
+    for (name, limits) in DAMPED_LIMITS {
+        for (zeta, limit) in ZETAS.into_iter().zip(limits) {
             // A step 1 % above the limit grows visibly within these steps, except for Euler at
             // light damping, where growth is too slow.
             if name == "euler" && zeta == 0.01 {
@@ -167,12 +149,7 @@ fn limits_of_a_damped_spring() {
         (1.0, 2.459_701),
         (2.0, 1.380_401),
     ] {
-        let mut network = Network::new(vec![1.0; 2]).unwrap();
-        let law = SpringLaw::new(1.0, 0.0, 2.0 * zeta).unwrap();
-        let (i, j, kind) = (0, 1, SpringKind::Structural);
-        network.add_spring(Spring { kind, i, j, law }).unwrap();
-        network.pin(0, Path::Still(Vector3::zeros())).unwrap();
-        check("verlet", &network, zeta, limit);
+        check("verlet", &damped_spring(1.0, 2.0 * zeta), zeta, limit);
     }
 }
 
