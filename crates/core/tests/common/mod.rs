@@ -112,7 +112,8 @@ pub fn damped_spring(omega: f64, damping: f64) -> Network {
     network
 }
 
-/// Linear oscillator of angular frequency `omega` (rad/s) and damping ratio `zeta`, by viscous drag.
+/// Linear oscillator of angular frequency `omega` (rad/s), with viscous drag of damping ratio
+/// `zeta`.
 pub fn oscillator(omega: f64, zeta: f64) -> Network {
     let mut network = damped_spring(omega, 0.0);
     network.set_drag(2.0 * zeta * omega).unwrap();
