@@ -13,7 +13,7 @@ use std::thread;
 
 use a3_core::integrators::METHODS;
 use a3_scenes::SCENES;
-use common::{command, text};
+use common::{Folder, command, text};
 
 const HASHES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/states.txt");
 const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes");
@@ -167,7 +167,7 @@ fn runs() -> Vec<Run> {
 
 #[test]
 fn no_bit_of_any_state_has_changed() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let runs = Mutex::new(runs());
     let found = Mutex::new(BTreeMap::<String, String>::new());
     thread::scope(|scope| {
@@ -177,7 +177,7 @@ fn no_bit_of_any_state_has_changed() {
                     let Some(run) = runs.lock().unwrap().pop() else {
                         return;
                     };
-                    let hash = run.hash(folder.path());
+                    let hash = run.hash(folder);
                     let name = run.name();
                     let before = found.lock().unwrap().insert(name.clone(), hash.clone());
                     assert!(

@@ -1,33 +1,20 @@
 //! Charts as a user makes them: measured, continued, interrupted, and refused in one line.
 
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-use crate::common::{a3, command};
+use crate::common::{Folder, a3, command, said};
 
-/// Runs a program that succeeds, and returns its standard output.
-pub fn said(folder: &Path, words: &[&str]) -> String {
-    let output = a3(folder, words);
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{words:?}: {stderr}");
-    assert!(!stderr.contains("error"), "{stderr}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// The scene of a bounce.
-const BOUNCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/bounce.toml");
-
-pub const CHAIN: [&str; 5] = ["chart", "--scene", "chain", "--work", "evaluations"];
+pub const CHAIN: &str = "chart --scene chain --work evaluations";
 
 #[test]
 fn a_chart_of_evaluations_has_the_same_bits_every_time() {
-    let folder = tempfile::tempdir().unwrap();
-    let files = ["a.csv", "a.svg", "b.csv", "b.svg"].map(|name| folder.path().join(name));
-    let words = |data, picture| [&CHAIN[..], &["--data", data, "--output", picture]].concat();
-    let first = said(folder.path(), &words("a.csv", "a.svg"));
-    let second = said(folder.path(), &words("b.csv", "b.svg"));
+    let folder = &Folder::new();
+    let files = ["a.csv", "a.svg", "b.csv", "b.svg"].map(|name| folder.join(name));
+    let run = |files: &str| said(folder, format!("{CHAIN} {files}"));
+    let first = run("--data a.csv --output a.svg");
+    let second = run("--data b.csv --output b.svg");
     assert_eq!(first.replace("a.svg", "b.svg"), second);
     let [a, drawn_a, b, drawn_b] = files.map(|file| fs::read(file).unwrap());
     assert!(a == b);
@@ -80,30 +67,26 @@ fn a_chart_of_evaluations_has_the_same_bits_every_time() {
 
 #[test]
 fn a_chart_goes_on_from_its_data() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for data in ["d.csv", "d.json"] {
-        let words = |solvers, output| {
-            let more = ["--data", data, "--solvers", solvers, "--output", output];
-            [&CHAIN[..], &more].concat()
-        };
-        said(folder.path(), &words("r,v", "one.svg"));
-        let path = folder.path().join(data);
+        let run = |more: &str| said(folder, format!("{CHAIN} --data {data} {more}"));
+        run("--solvers r,v --output one.svg");
+        let path = folder.join(data);
         let before = fs::read_to_string(&path).unwrap();
-        said(folder.path(), &words("r,v,x", "two.svg"));
+        run("--solvers r,v,x --output two.svg");
         let after = fs::read_to_string(&path).unwrap();
         assert!(after.contains("dop853") && !before.contains("dop853"));
         assert!(after.len() > before.len());
-        said(folder.path(), &words("r,v,x", "three.svg"));
-        let [two, three] =
-            ["two.svg", "three.svg"].map(|name| fs::read(folder.path().join(name)).unwrap());
+        run("--solvers r,v,x --output three.svg");
+        let [two, three] = ["two.svg", "three.svg"].map(|name| folder.bytes(name));
         assert!(two == three);
         assert!(after == fs::read_to_string(&path).unwrap(), "{data}");
     }
     // Runs in the file are used, not measured again: here, that Verlet's method needs no work.
-    let path = folder.path().join("d.csv");
+    let path = folder.join("d.csv");
     let mut reader = csv::Reader::from_path(&path).unwrap();
     let headers = reader.headers().unwrap().clone();
-    let mut writer = csv::Writer::from_path(folder.path().join("e.csv")).unwrap();
+    let mut writer = csv::Writer::from_path(folder.join("e.csv")).unwrap();
     // Without checksums, edited data are accepted.
     let count = headers.len() - 1;
     assert_eq!(&headers[count], "check");
@@ -121,8 +104,8 @@ fn a_chart_goes_on_from_its_data() {
         writer.write_record(cells).unwrap();
     }
     writer.flush().unwrap();
-    let words = ["--data", "e.csv", "--solvers", "r,v", "--output", "e.svg"];
-    let text = said(folder.path(), &[&CHAIN[..], &words].concat());
+    let words = "--data e.csv --solvers r,v --output e.svg";
+    let text = said(folder, format!("{CHAIN} {words}"));
     assert!(text.contains("*0.12"), "{text}");
 }
 
@@ -131,25 +114,12 @@ fn a_chart_goes_on_from_its_data() {
 #[cfg(unix)]
 #[test]
 fn an_interrupted_chart_draws_what_it_has() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = |data, output| {
-        let mut words = vec![
-            "chart",
-            "--scene",
-            "mit",
-            "--work",
-            "evaluations",
-            "--until",
-            "1",
-        ];
-        words.extend(["--solvers", "t,r,v,a", "--data", data, "--output", output]);
-        words
-    };
-    let mut child = command(folder.path(), &words("i.csv", "i.svg"))
-        .spawn()
-        .unwrap();
+    let folder = &Folder::new();
+    let run = "chart --scene mit --work evaluations --until 1 --solvers t,r,v,a";
+    let interrupted = format!("{run} --data i.csv --output i.svg");
+    let mut child = command(folder, &interrupted).spawn().unwrap();
     // Once the first method is in the file.
-    let data = folder.path().join("i.csv");
+    let data = folder.join("i.csv");
     while !data.exists() {
         assert!(child.try_wait().unwrap().is_none(), "it ended before");
         std::thread::sleep(Duration::from_millis(5));
@@ -165,61 +135,37 @@ fn an_interrupted_chart_draws_what_it_has() {
         stderr.contains("interrupted: the chart has what was measured"),
         "{stderr}"
     );
-    assert!(folder.path().join("i.svg").exists());
+    assert!(folder.join("i.svg").exists());
     let partial = fs::read_to_string(&data).unwrap();
-    said(folder.path(), &words("i.csv", "i.svg"));
-    said(folder.path(), &words("j.csv", "j.svg"));
-    let [whole, straight] =
-        ["i.csv", "j.csv"].map(|n| fs::read_to_string(folder.path().join(n)).unwrap());
+    said(folder, &interrupted);
+    said(folder, format!("{run} --data j.csv --output j.svg"));
+    let [whole, straight] = ["i.csv", "j.csv"].map(|n| fs::read_to_string(folder.join(n)).unwrap());
     assert!(partial.len() < whole.len());
     assert!(whole == straight);
 }
 
 #[test]
 fn stiffness_makes_panels_and_other_errors_count() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = [
-        "--stiffness",
-        "1,100",
-        "--solvers",
-        "v,r",
-        "--error",
-        "energy",
-        "--until",
-        "0.5",
-        "-o",
-        "p.png",
-        "--size",
-        "800x500",
-    ];
-    let text = said(folder.path(), &[&CHAIN[..], &words].concat());
+    let folder = &Folder::new();
+    let words =
+        "--stiffness 1,100 --solvers v,r --error energy --until 0.5 -o p.png --size 800x500";
+    let text = said(folder, format!("{CHAIN} {words}"));
     assert!(
         text.contains("stiffness x 100") && text.contains("1e-4 J"),
         "{text}"
     );
-    let picture = image::open(folder.path().join("p.png")).unwrap();
+    let picture = image::open(folder.join("p.png")).unwrap();
     assert_eq!((picture.width(), picture.height()), (800, 500));
 }
 
 #[test]
 fn seconds_are_measured() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = [
-        "chart",
-        "--scene",
-        "simple",
-        "--solvers",
-        "e,r",
-        "--until",
-        "2",
-        "--data",
-        "s.json",
-    ];
-    let text = said(folder.path(), &words);
+    let folder = &Folder::new();
+    let words = "chart --scene simple --solvers e,r --until 2 --data s.json";
+    let text = said(folder, words);
     assert!(text.contains("computing time (ms)"), "{text}");
-    assert!(folder.path().join("a3-chart-simple.svg").exists());
-    let runs: serde_json::Value =
-        serde_json::from_slice(&fs::read(folder.path().join("s.json")).unwrap()).unwrap();
+    assert!(folder.join("a3-chart-simple.svg").exists());
+    let runs: serde_json::Value = folder.json("s.json");
     let runs = runs.as_array().unwrap();
     assert!(
         runs.iter()
@@ -232,10 +178,9 @@ fn seconds_are_measured() {
 
 #[test]
 fn a_long_horizon_is_warned_of() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut words = vec!["chart", "--scene", "double-pendulum", "--until", "8"];
-    words.extend(["--solvers", "r", "--work", "evaluations"]);
-    let output = a3(folder.path(), &words);
+    let folder = &Folder::new();
+    let words = "chart --scene double-pendulum --until 8 --solvers r --work evaluations";
+    let output = a3(folder, words);
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(
         stderr.contains("warning: ") && stderr.contains("Lyapunov time"),
@@ -245,97 +190,71 @@ fn a_long_horizon_is_warned_of() {
 
 #[test]
 fn wrong_usage_is_one_line() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("bad.csv"), "a,b\n1,2\n").unwrap();
-    fs::write(folder.path().join("bad.json"), "[{\"scene\": 1}]").unwrap();
+    let folder = &Folder::new();
+    folder.write("bad.csv", "a,b\n1,2\n");
+    folder.write("bad.json", "[{\"scene\": 1}]");
+    let bounce = include_str!("../../../../docs/scenes/bounce.toml");
+    folder.write("bounce.toml", bounce);
     for (words, right, code) in [
-        (vec!["chart", "--solvers", "t,q"], "the solvers are", 2),
-        (vec!["chart", "--stiffness", "1,0"], "such as 10", 2),
-        (vec!["chart", "--stiffness", "-1"], "such as 10", 2),
+        ("chart --solvers t,q", "the solvers are", 2),
+        ("chart --stiffness 1,0", "such as 10", 2),
+        ("chart --stiffness -1", "such as 10", 2),
+        ("chart --stiffness 2 --scene simple", "has no springs", 2),
+        ("chart --until 0", "such as 1", 2),
+        ("chart --until nan", "such as 1", 2),
+        ("chart --error speed", "position", 2),
         (
-            vec!["chart", "--stiffness", "2", "--scene", "simple"],
-            "has no springs",
-            2,
-        ),
-        (vec!["chart", "--until", "0"], "such as 1", 2),
-        (vec!["chart", "--until", "nan"], "such as 1", 2),
-        (vec!["chart", "--error", "speed"], "position", 2),
-        (
-            vec!["chart", "--error", "energy", "--scene", "simple"],
+            "chart --error energy --scene simple",
             "ask for position or phase",
             2,
         ),
         (
-            vec![
-                "choose", "--error", "1e-3", "--of", "strain", "--scene", "simple",
-            ],
+            "choose --error 1e-3 --of strain --scene simple",
             "ask for position or phase",
             2,
         ),
         (
-            vec!["chart", "--error", "impact", "--scene", "chain"],
+            "chart --error impact --scene chain",
             "no surfaces touch in the scene chain",
             2,
         ),
         (
-            vec![
-                "choose", "--error", "1e-3", "--of", "impact", "--until", "0.1", "--scene", BOUNCE,
-            ],
+            "choose --error 1e-3 --of impact --until 0.1 --scene bounce.toml",
             "no impact begins or ends in 0.1 s",
             2,
         ),
         (
-            vec!["chart", "--particle", "4", "--scene", "chain"],
+            "chart --particle 4 --scene chain",
             "its particles are 0 to 3",
             2,
         ),
-        (vec!["chart", "--work", "joules"], "evaluations", 2),
-        (vec!["chart", "--output", "x.gif"], ".svg, .pdf or .png", 2),
-        (vec!["chart", "--data", "x.txt"], ".csv or .json", 2),
+        ("chart --work joules", "evaluations", 2),
+        ("chart --output x.gif", ".svg, .pdf or .png", 2),
+        ("chart --data x.txt", ".csv or .json", 2),
         (
-            vec!["chart", "--data", "bad.csv"],
+            "chart --data bad.csv",
             "does not hold the data of a chart",
             2,
         ),
         (
-            vec!["chart", "--data", "bad.json"],
+            "chart --data bad.json",
             "does not hold the data of a chart",
             2,
         ),
-        (
-            vec!["chart", "--output", "no/x.svg"],
-            "there is no folder no",
-            1,
-        ),
-        (vec!["chart", "--size", "10x10"], "320x240", 2),
-        (
-            vec!["chart", "--solvers", "v", "--scene", "simple"],
-            "needs forces",
-            2,
-        ),
-        (vec!["stability", "--step", "0"], "such as 0.01", 2),
-        (
-            vec!["stability", "--output", "s.eps"],
-            ".svg, .pdf or .png",
-            2,
-        ),
-        (vec!["choose"], "--error", 2),
-        (vec!["choose", "--error", "0"], "such as 1e-3", 2),
-        (vec!["choose", "--budget", "-1"], "such as 2", 2),
-        (
-            vec!["choose", "--error", "1e-3", "--budget", "1"],
-            "--error",
-            2,
-        ),
-        (
-            vec!["choose", "--error", "1e-12", "--scene", "chain"],
-            "at least",
-            2,
-        ),
-        (vec!["a", "3"], "relative tolerance", 2),
-        (vec!["x", "1e-20"], "such as 0.01", 2),
+        ("chart --output no/x.svg", "there is no folder no", 1),
+        ("chart --size 10x10", "320x240", 2),
+        ("chart --solvers v --scene simple", "needs forces", 2),
+        ("stability --step 0", "such as 0.01", 2),
+        ("stability --output s.eps", ".svg, .pdf or .png", 2),
+        ("choose", "--error", 2),
+        ("choose --error 0", "such as 1e-3", 2),
+        ("choose --budget -1", "such as 2", 2),
+        ("choose --error 1e-3 --budget 1", "--error", 2),
+        ("choose --error 1e-12 --scene chain", "at least", 2),
+        ("a 3", "relative tolerance", 2),
+        ("x 1e-20", "such as 0.01", 2),
     ] {
-        let output = a3(folder.path(), &words);
+        let output = a3(folder, words);
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(code), "{words:?}: {stderr}");
         assert_eq!(stderr.lines().count(), 1, "{words:?}: {stderr}");
@@ -344,41 +263,38 @@ fn wrong_usage_is_one_line() {
             "{words:?}: {stderr}"
         );
     }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    assert_eq!(folder.count(), 3);
 }
 
 /// `--open` gives the picture, by its whole path, to the program of the desktop.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_chart_opens_in_the_viewer() {
-    let folder = tempfile::tempdir().unwrap();
-    let viewer = folder.path().join("xdg-open");
-    fs::write(
-        &viewer,
+    let folder = &Folder::new();
+    let viewer = folder.join("xdg-open");
+    folder.write(
+        "xdg-open",
         "#!/bin/sh\n/bin/cp \"$1\" shown.tmp && /bin/mv shown.tmp shown\n",
-    )
-    .unwrap();
+    );
     let runs = std::os::unix::fs::PermissionsExt::from_mode(0o700);
     fs::set_permissions(&viewer, runs).unwrap();
-    let shown = folder.path().join("shown");
-    let chart = ["--solvers", "r", "--until", "0.1", "--no-model"];
+    let shown = folder.join("shown");
     let hung = "gravity = [0, -9.81, 0]\ndrag_per_mass = 4\n[[cloth]]\ngrid = [9, 9]\nwidth = 1\ndensity = 1\n\
         stiffness = [200, 0, 0]\nat = [0, 0, 0]\npin = [{ at = [\"top\"] }]\n";
-    fs::write(folder.path().join("hung.toml"), hung).unwrap();
+    folder.write("hung.toml", hung);
+    let chart = format!("{CHAIN} --solvers r --until 0.1 --no-model");
+    let stability = "stability --scene simple --solvers r";
     let simplify = "simplify --scene hung.toml --error 1e-2 --until 1";
+    let open = |words: &str| {
+        let mut command = command(folder, format!("{words} --open"));
+        command.env("PATH", &**folder).output().unwrap()
+    };
     for (words, file) in [
-        ([&CHAIN[..], &chart].concat(), "a3-chart-chain.svg"),
-        (
-            vec!["stability", "--scene", "simple", "--solvers", "r"],
-            "a3-stability-simple.svg",
-        ),
-        (simplify.split(' ').collect(), "a3-simplify-hung.svg"),
+        (&*chart, "a3-chart-chain.svg"),
+        (stability, "a3-stability-simple.svg"),
+        (simplify, "a3-simplify-hung.svg"),
     ] {
-        let words = [&words[..], &["--open"]].concat();
-        let output = command(folder.path(), &words)
-            .env("PATH", folder.path())
-            .output()
-            .unwrap();
+        let output = open(words);
         let [said, why] = [output.stdout, output.stderr].map(|it| String::from_utf8(it).unwrap());
         assert!(said.contains(&format!("chart: {file}")), "{said}{why}");
         let begun = std::time::Instant::now();
@@ -389,16 +305,12 @@ fn a_chart_opens_in_the_viewer() {
             );
             std::thread::sleep(Duration::from_millis(10));
         }
-        let picture = fs::read(folder.path().join(file)).unwrap();
+        let picture = folder.bytes(file);
         assert!(fs::read(&shown).unwrap() == picture, "{file}");
         fs::remove_file(&shown).unwrap();
     }
     fs::remove_file(viewer).unwrap();
-    let words = ["stability", "--scene", "simple", "--solvers", "r", "--open"];
-    let output = command(folder.path(), &words)
-        .env("PATH", folder.path())
-        .output()
-        .unwrap();
+    let output = open(stability);
     let why = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{why}");
     assert!(

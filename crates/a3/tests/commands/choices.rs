@@ -1,22 +1,12 @@
 //! Limits of steps, and solvers chosen for a scene.
 
-use std::fs;
-
-use super::charts::said;
+use crate::common::{Folder, said};
 
 #[test]
 fn bounded_accurate_and_slowly_growing_steps_are_told_apart() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = [
-        "stability",
-        "--scene",
-        "mit",
-        "--solvers",
-        "t,r,v,x,s",
-        "-o",
-        "s.svg",
-    ];
-    let text = said(folder.path(), &words);
+    let folder = &Folder::new();
+    let words = "stability --scene mit --solvers t,r,v,x,s -o s.svg";
+    let text = said(folder, words);
     let mut rows = 0;
     for line in text.lines() {
         let cells = line.split_whitespace().skip(1);
@@ -37,7 +27,7 @@ fn bounded_accurate_and_slowly_growing_steps_are_told_apart() {
     for word in ["a\u{2013}b       not sharp", "grows tenfold in 10 s"] {
         assert!(text.contains(word), "{word} in {text}");
     }
-    let svg = fs::read_to_string(folder.path().join("s.svg")).unwrap();
+    let svg = folder.read("s.svg");
     for word in ["Where solvers fail: mit", "Re(h", "not sharp", "slowly"] {
         assert!(svg.contains(word), "{word}");
     }
@@ -47,7 +37,7 @@ fn bounded_accurate_and_slowly_growing_steps_are_told_apart() {
 /// on the others that are asked for.
 #[test]
 fn limits_of_a_solver_do_not_depend_on_the_others() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let scene = "gravity = [0, -9.81, 0]
         drag = 0.04
         springs = [[0, 10, 25, 0.5, 0], [1, 5, 30, 0.55, 0.05], [2, 8, 20, 0.6, 0]]
@@ -61,16 +51,15 @@ fn limits_of_a_solver_do_not_depend_on_the_others() {
         at = [0, 0, 0]
         velocity = [0.3, 0.2, -0.1]
         spin = [1, 4, -2]";
-    fs::write(folder.path().join("box.toml"), scene).unwrap();
+    folder.write("box.toml", scene);
     let pefrl = |solvers: &str| -> serde_json::Value {
         let words = "stability --scene box.toml -o s.svg --data s.json --solvers";
-        let words: Vec<_> = words.split(' ').chain([solvers]).collect();
-        let text = said(folder.path(), &words);
+        let text = said(folder, format!("{words} {solvers}"));
         assert!(
             !text.contains(" 0\u{2013}") && !text.contains("ratio -"),
             "{text}"
         );
-        let rows = fs::read_to_string(folder.path().join("s.json")).unwrap();
+        let rows = folder.read("s.json");
         let rows: Vec<serde_json::Value> = serde_json::from_str(&rows).unwrap();
         let row = rows.into_iter().find(|row| row["solver"] == "pefrl");
         row.unwrap()
@@ -88,9 +77,9 @@ fn limits_of_a_solver_do_not_depend_on_the_others() {
 /// The rods of a double pendulum are held by a feedback that is damped; its motion is not.
 #[test]
 fn the_feedback_of_constraints_is_no_motion() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let words = "stability --scene double-pendulum --solvers r -o s.svg";
-    let text = said(folder.path(), &words.split(' ').collect::<Vec<_>>());
+    let text = said(folder, words);
     let head = text.lines().next().unwrap();
     assert!(!head.contains("damping ratio 1.000"), "{head}");
     assert!(
@@ -106,35 +95,31 @@ fn the_feedback_of_constraints_is_no_motion() {
         pin = [{ particles = [0] }]
         [[constraint]]
         rod = [0, 1]";
-    fs::write(folder.path().join("rod.toml"), scene).unwrap();
+    folder.write("rod.toml", scene);
     let words = "stability --scene rod.toml --solvers r -o s.svg";
-    let text = said(folder.path(), &words.split(' ').collect::<Vec<_>>());
+    let text = said(folder, words);
     let head = text.lines().next().unwrap();
     assert!(!head.contains("damping ratio 1.000"), "{head}");
 }
 
 #[test]
 fn an_absolute_tolerance_is_in_metres() {
-    let folder = tempfile::tempdir().unwrap();
-    let steps = |more: &[&str]| -> u64 {
+    let folder = &Folder::new();
+    let steps = |more: &str| -> u64 {
         let words = "simulate x 1e-4 --scene chain --until 1 -o x.json --summary -";
-        let words: Vec<_> = words.split(' ').chain(more.iter().copied()).collect();
-        let text = said(folder.path(), &words);
+        let text = said(folder, format!("{words} {more}"));
         let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
         summary["steps"].as_u64().unwrap()
     };
-    let (usual, close) = (steps(&[]), steps(&["--absolute", "1e-9"]));
+    let (usual, close) = (steps(""), steps("--absolute 1e-9"));
     // Errors of order 8: a hundred thousandth takes 10^(5/8) = 4 times the steps.
     assert!(close > 2 * usual, "{usual} {close}");
 }
 
 #[test]
 fn a_choice_comes_with_its_command() {
-    let folder = tempfile::tempdir().unwrap();
-    let text = said(
-        folder.path(),
-        &["choose", "--error", "1e-4", "--scene", "chain"],
-    );
+    let folder = &Folder::new();
+    let text = said(folder, "choose --error 1e-4 --scene chain");
     for word in ["best", "runner-up", "an error of 1e-4 m", "time/frame"] {
         assert!(text.contains(word), "{word} in\n{text}");
     }
@@ -142,21 +127,10 @@ fn a_choice_comes_with_its_command() {
         .lines()
         .find_map(|line| line.strip_prefix("run it:  a3 "))
         .unwrap();
-    let mut words: Vec<_> = line.split_whitespace().collect();
-    assert!(
-        words.contains(&"--scene") && words.contains(&"chain"),
-        "{line}"
-    );
+    assert!(line.contains("--scene chain"), "{line}");
     // The same arguments, without a window.
-    words.splice(0..0, ["simulate"]);
-    words.extend(["--until", "1", "--output", "c.json"]);
-    said(folder.path(), &words);
-    let text = said(
-        folder.path(),
-        &[
-            "choose", "--budget", "5", "--scene", "simple", "--until", "2",
-        ],
-    );
+    said(folder, format!("simulate {line} --until 1 --output c.json"));
+    let text = said(folder, "choose --budget 5 --scene simple --until 2");
     assert!(
         text.contains("5 ms per frame") && text.contains("run it:  a3 "),
         "{text}"
@@ -166,7 +140,7 @@ fn a_choice_comes_with_its_command() {
 /// A rod falls from its upright place: differences grow 10-fold in 10 s, which is not hardly.
 #[test]
 fn growth_is_told_by_its_size() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let note = |gravity: &str| {
         let scene = format!(
             "gravity = [0, {gravity}, 0]
@@ -180,9 +154,9 @@ fn growth_is_told_by_its_size() {
             positions = [[0, 0, 0], [0, 1, 0]]
             velocities = [[0, 0, 0], [0.01, 0, 0]]"
         );
-        fs::write(folder.path().join("rod.toml"), scene).unwrap();
+        folder.write("rod.toml", scene);
         let words = "choose --error 1e-3 --work evaluations --scene rod.toml";
-        said(folder.path(), &words.split(' ').collect::<Vec<_>>())
+        said(folder, words)
     };
     let falls = note("-0.09");
     assert!(

@@ -1,21 +1,18 @@
 //! Data of `a3 chart` and `a3 stability`: orders of methods and limits of steps that are known in
 //! closed form.
 
-use std::fs;
-
-use crate::charts::{CHAIN, said};
-use crate::common::a3;
+use crate::charts::CHAIN;
+use crate::common::{Folder, a3, said};
 
 /// The order between runs is that of their method, the errors of single particles agree with those
 /// of all, and the errors at neighbouring tolerances are similar.
 #[test]
 fn orders_particles_and_spread_are_in_the_data() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = ["--solvers", "t,r,x", "--until", "3", "--spread"];
-    let files = ["--data", "d.csv", "--each", "e.csv", "-o", "c.svg"];
-    said(folder.path(), &[&CHAIN[..], &words, &files].concat());
+    let folder = &Folder::new();
+    let words = "--solvers t,r,x --until 3 --spread --data d.csv --each e.csv -o c.svg";
+    said(folder, format!("{CHAIN} {words}"));
     let read = |name: &str| -> Vec<std::collections::HashMap<String, String>> {
-        let mut reader = csv::Reader::from_path(folder.path().join(name)).unwrap();
+        let mut reader = csv::Reader::from_path(folder.join(name)).unwrap();
         reader.deserialize().map(Result::unwrap).collect()
     };
     let (runs, each) = (read("d.csv"), read("e.csv"));
@@ -52,7 +49,7 @@ fn orders_particles_and_spread_are_in_the_data() {
         }
     }
     assert!(beside > 9, "{beside}");
-    let svg = fs::read_to_string(folder.path().join("c.svg")).unwrap();
+    let svg = folder.read("c.svg");
     assert!(svg.contains("fill-opacity=\"0.25\"") && svg.contains("within 4 %"));
 }
 
@@ -60,12 +57,11 @@ fn orders_particles_and_spread_are_in_the_data() {
 /// the fastest frequency. Explicit Euler has no sharp limit: an interval stands in its place.
 #[test]
 fn limits_are_written_as_data() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = ["stability", "--scene", "chain", "--solvers", "e,r,v"];
-    let words = [&words[..], &["--data", "l.json", "-o", "l.svg"]].concat();
-    let text = said(folder.path(), &words);
+    let folder = &Folder::new();
+    let words = "stability --scene chain --solvers e,r,v --data l.json -o l.svg";
+    let text = said(folder, words);
     assert!(text.contains("a\u{2013}b"), "{text}");
-    let data = fs::read_to_string(folder.path().join("l.json")).unwrap();
+    let data = folder.read("l.json");
     let rows: Vec<serde_json::Value> = serde_json::from_str(&data).unwrap();
     assert_eq!(rows.len(), 3);
     let number = |row: usize, key: &str, part: &str| rows[row][key][part].as_f64().unwrap();
@@ -78,10 +74,10 @@ fn limits_are_written_as_data() {
     assert!((rk4 / verlet - 2f64.sqrt()).abs() < 0.03, "{rk4} {verlet}");
     assert_eq!(rows[2]["rest_observed"]["sharp"], true);
     for words in ["stability --data s.csv", "chart --each e.json"] {
-        let refused = a3(folder.path(), &words.split(' ').collect::<Vec<_>>());
+        let refused = a3(folder, words);
         let said = String::from_utf8(refused.stderr).unwrap();
         assert!(said.contains("must end in ."), "{said}");
     }
-    let svg = fs::read_to_string(folder.path().join("l.svg")).unwrap();
+    let svg = folder.read("l.svg");
     assert!(svg.contains("not sharp: the shortest step that failed"));
 }

@@ -4,15 +4,15 @@ use std::fmt::Write;
 use std::fs;
 use std::process::Stdio;
 
-use crate::common::{a3, command, complaint, text};
+use crate::common::{Folder, a3, command, complaint, text};
 
 /// Characters that would move the cursor, change colours or hide what follows.
 const TRICKS: &str = "\u{1b}[31mred\u{7}\u{9b}1m\u{202e}";
 
 #[test]
 fn every_exit_code_is_in_the_manual_and_is_used() {
-    let folder = tempfile::tempdir().unwrap();
-    let manual = a3(folder.path(), &["man"]);
+    let folder = &Folder::new();
+    let manual = a3(folder, "man");
     let manual = text(&manual.stdout);
     let (_, section) = manual.split_once(".SH \"EXIT STATUS\"\n").unwrap();
     let section = section.split(".SH").next().unwrap();
@@ -27,8 +27,8 @@ fn every_exit_code_is_in_the_manual_and_is_used() {
         .collect();
     // Signals have tests of their own.
     assert_eq!(listed, [0, 1, 2, 129, 130, 143]);
-    let code = |words: &[&str]| {
-        let output = command(folder.path(), words)
+    let code = |words: &str| {
+        let output = command(folder, words)
             // No adapter has this name.
             .env("WGPU_ADAPTER_NAME", "none of them")
             .output()
@@ -37,49 +37,34 @@ fn every_exit_code_is_in_the_manual_and_is_used() {
         assert!(lines <= 2, "{words:?}: {}", text(&output.stderr));
         output.status.code().unwrap()
     };
-    fs::write(folder.path().join("bad.toml"), "cloth = 1\n").unwrap();
-    fs::write(folder.path().join("bad.csv"), "a\n").unwrap();
-    let run = |more: &[&'static str]| {
-        [
-            &["simulate", "r", "0.01", "--until", "1", "-o", "x.json"],
-            more,
-        ]
-        .concat()
-    };
+    folder.write("bad.toml", "cloth = 1\n");
+    folder.write("bad.csv", "a\n");
     for (expected, words) in [
-        (0, run(&["--scene", "simple"])),
+        (0, "simulate r 0.01 --until 1 -o x.json --scene simple"),
         // Without a display, and then without a picture.
-        (0, vec!["r", "0.01", "--scene", "simple"]),
-        (0, vec!["compare", "e", "r", "--scene", "simple"]),
+        (0, "r 0.01 --scene simple"),
+        (0, "compare e r --scene simple"),
+        (1, "simulate e 0.1 --scene mit --until 9 -o x.json"),
+        (1, "simulate r --until 1 -o nowhere/x.json"),
+        (1, "render --scene simple --until 1 -o x.png"),
+        (2, "simulate r 0.01 --until 1 -o x.json --scene bad.toml"),
         (
-            1,
-            vec![
-                "simulate", "e", "0.1", "--scene", "mit", "--until", "9", "-o", "x.json",
-            ],
+            2,
+            "simulate r 0.01 --until 1 -o x.json --scene nowhere.toml",
         ),
-        (
-            1,
-            vec!["simulate", "r", "--until", "1", "-o", "nowhere/x.json"],
-        ),
-        (
-            1,
-            vec!["render", "--scene", "simple", "--until", "1", "-o", "x.png"],
-        ),
-        (2, run(&["--scene", "bad.toml"])),
-        (2, run(&["--scene", "nowhere.toml"])),
-        (2, run(&["--grid", "1x1"])),
-        (2, run(&["--summary", "x.json"])),
-        (2, vec!["chart", "--data", "bad.csv"]),
-        (2, vec!["fly"]),
+        (2, "simulate r 0.01 --until 1 -o x.json --grid 1x1"),
+        (2, "simulate r 0.01 --until 1 -o x.json --summary x.json"),
+        (2, "chart --data bad.csv"),
+        (2, "fly"),
     ] {
-        assert_eq!(code(&words), expected, "{words:?}");
+        assert_eq!(code(words), expected, "{words:?}");
     }
 }
 
 #[test]
 fn nothing_from_a_file_or_a_name_moves_the_cursor() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("tricky.toml");
+    let folder = &Folder::new();
+    let path = folder.join("tricky.toml");
     let mut name = String::new();
     for c in TRICKS.chars() {
         write!(name, "\\u{:04x}", u32::from(c)).unwrap();
@@ -101,7 +86,7 @@ fn nothing_from_a_file_or_a_name_moves_the_cursor() {
         vec![&quoted],
         vec!["chart", "--solvers", &quoted],
     ] {
-        let output = a3(folder.path(), &words);
+        let output = a3(folder, &words);
         for (channel, bytes) in [("out", &output.stdout), ("error", &output.stderr)] {
             let unseen = |c: char| c != '\n' && (c.is_control() || c == '\u{202e}');
             let said = text(bytes);
@@ -113,7 +98,7 @@ fn nothing_from_a_file_or_a_name_moves_the_cursor() {
         }
     }
     // The chart has a name in this folder.
-    let charts = fs::read_dir(folder.path()).unwrap().filter(|entry| {
+    let charts = fs::read_dir(folder).unwrap().filter(|entry| {
         let name = entry.as_ref().unwrap().file_name().into_string().unwrap();
         name.starts_with("a3-chart-") && !name.contains(char::is_control)
     });
@@ -121,8 +106,8 @@ fn nothing_from_a_file_or_a_name_moves_the_cursor() {
     // Data stay as they are, and a name adds no line to them.
     let words = [&["simulate", "--until", "0", "-o", "x.obj"][..], &tricky].concat();
     fs::write(&path, scene.replacen("/..", "\\nv 7 7 7", 1)).unwrap();
-    assert!(a3(folder.path(), &words).status.success());
-    let obj = fs::read_to_string(folder.path().join("x.obj")).unwrap();
+    assert!(a3(folder, &words).status.success());
+    let obj = folder.read("x.obj");
     assert!(!obj.lines().any(|line| line == "v 7 7 7"));
 }
 
@@ -130,14 +115,14 @@ fn nothing_from_a_file_or_a_name_moves_the_cursor() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_standard_error_does_not_change_the_exit_code() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for (words, code) in [
-        (&["fly"][..], 2),
-        (&["simulate", "--until", "1", "-o", "nowhere/x.json"], 1),
-        (&["r", "0.01", "--scene", "simple"], 0),
+        ("fly", 2),
+        ("simulate --until 1 -o nowhere/x.json", 1),
+        ("r 0.01 --scene simple", 0),
     ] {
         let full = fs::File::options().write(true).open("/dev/full").unwrap();
-        let status = command(folder.path(), words)
+        let status = command(folder, words)
             .stdout(Stdio::null())
             .stderr(full)
             .status();

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use crate::common::{command, complaint, gpu_is_missing, is_missing, text};
+use crate::common::{Folder, command, complaint, gpu_is_missing, is_missing, text};
 
 /// Returns the files of a folder, with their contents.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -31,16 +31,15 @@ fn is_whole(name: &str, bytes: &[u8], whole: &[u8]) -> bool {
 /// Makes a command fail at every operation, over files that exist already. It must fail at least
 /// `least` times, and its files must exist after it.
 fn fail_everywhere(words: &str, files: &[&str], least: usize) {
-    let words: Vec<_> = words.split(' ').collect();
     let fresh = || {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = Folder::new();
         for file in files {
-            fs::write(folder.path().join(file), OLD).unwrap();
+            folder.write(file, OLD);
         }
         folder
     };
-    let folder = fresh();
-    let output = command(folder.path(), &words).output().unwrap();
+    let folder = &fresh();
+    let output = command(folder, words).output().unwrap();
     if gpu_is_missing(&output) {
         return;
     }
@@ -49,14 +48,14 @@ fn fail_everywhere(words: &str, files: &[&str], least: usize) {
         "{words:?}: {}",
         text(&output.stderr)
     );
-    let whole = contents(folder.path());
+    let whole = contents(folder);
     for fault in 1.. {
-        let folder = fresh();
-        let output = command(folder.path(), &words)
+        let folder = &fresh();
+        let output = command(folder, words)
             .env("A3_FAULT", fault.to_string())
             .output()
             .unwrap();
-        let there = contents(folder.path());
+        let there = contents(folder);
         for (name, bytes) in &there {
             let old = files.contains(&&**name) && bytes == OLD;
             let new = whole
@@ -138,16 +137,13 @@ fn charts_and_manuals_survive_every_fault() {
 /// A value of `A3_FAULT` that is no number has no effect.
 #[test]
 fn no_fault_is_asked_for_by_chance() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = ["simulate", "--scene", "simple", "--until", "1", "-o", "-"];
-    let output = command(folder.path(), &words)
+    let folder = &Folder::new();
+    let words = "simulate --scene simple --until 1 -o -";
+    let output = command(folder, words)
         .env("A3_FAULT", "1")
         .output()
         .unwrap();
     assert!(complaint(&output, 1).contains("standard output"));
-    let output = command(folder.path(), &words)
-        .env("A3_FAULT", "")
-        .output()
-        .unwrap();
+    let output = command(folder, words).env("A3_FAULT", "").output().unwrap();
     assert!(output.status.success());
 }

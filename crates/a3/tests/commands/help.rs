@@ -3,22 +3,17 @@
 use std::fs;
 use std::process::Stdio;
 
-use crate::common::{a3, command, text};
+use crate::common::{Folder, a3, command, text};
 
 #[test]
 fn help_and_version() {
-    let folder = tempfile::tempdir().unwrap();
-    for words in [
-        &["--help"][..],
-        &["-h"],
-        &["simulate", "--help"],
-        &["--version"],
-    ] {
-        let output = a3(folder.path(), words);
+    let folder = &Folder::new();
+    for words in ["--help", "-h", "simulate --help", "--version"] {
+        let output = a3(folder, words);
         assert!(output.status.success() && output.stderr.is_empty());
         assert!(!output.stdout.is_empty());
     }
-    let help = a3(folder.path(), &["--help"]);
+    let help = a3(folder, "--help");
     for word in [
         "simulate",
         "render",
@@ -39,8 +34,8 @@ fn help_and_version() {
 
 #[test]
 fn lists() {
-    let folder = tempfile::tempdir().unwrap();
-    let scenes = a3(folder.path(), &["scenes"]);
+    let folder = &Folder::new();
+    let scenes = a3(folder, "scenes");
     let row = |name: &str| {
         let stdout = text(&scenes.stdout).to_owned();
         let row = stdout
@@ -55,7 +50,7 @@ fn lists() {
         assert!(row("mit-sphere").contains(number), "{number}");
     }
     assert!(row("simple").contains(" 3 "));
-    let solvers = a3(folder.path(), &["solvers"]);
+    let solvers = a3(folder, "solvers");
     for solver in a3_core::integrators::METHODS {
         let start = format!("{}  {} ", solver.letter.unwrap(), solver.name);
         assert!(
@@ -69,15 +64,15 @@ fn lists() {
 
 #[test]
 fn a_closed_or_full_output_is_no_panic() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for words in [
-        &["scenes"][..],
-        &["t", "0.01", "--scene", "pendulum"],
-        &["solvers"],
-        &["--help"],
-        &["chart", "--help"],
+        "scenes",
+        "t 0.01 --scene pendulum",
+        "solvers",
+        "--help",
+        "chart --help",
     ] {
-        let mut child = command(folder.path(), words)
+        let mut child = command(folder, words)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
@@ -91,7 +86,7 @@ fn a_closed_or_full_output_is_no_panic() {
         #[cfg(target_os = "linux")]
         {
             let full = fs::File::options().write(true).open("/dev/full").unwrap();
-            let output = command(folder.path(), words)
+            let output = command(folder, words)
                 .stdout(full)
                 .stderr(Stdio::piped())
                 .spawn()

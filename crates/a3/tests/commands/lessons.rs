@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::common::{a3, gpu_is_missing, text};
+use super::common::{Folder, a3, gpu_is_missing, text};
 use super::refused;
 
 const LESSONS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../files/lessons");
@@ -18,14 +18,14 @@ fn blocks(page: &str) -> Vec<(&str, &str)> {
 
 /// Follows a lesson in a folder of its own.
 fn follow(name: &str, page: &str) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let (mut said, mut made) = (String::new(), vec![]);
     for (language, block) in blocks(page) {
         match language {
             // A scene, whose first line begins with the name under which it is saved.
             "toml" => {
                 let file = block.strip_prefix("# ").unwrap().split_once(':').unwrap().0;
-                fs::write(folder.path().join(file), block).unwrap();
+                folder.write(file, block);
             }
             "sh" => {
                 for line in block.lines() {
@@ -34,7 +34,7 @@ fn follow(name: &str, page: &str) {
                     let mut words = line.split_whitespace();
                     assert_eq!(words.next(), Some("a3"), "{name}: {line}");
                     let words: Vec<_> = words.collect();
-                    let output = a3(folder.path(), &words);
+                    let output = a3(folder, &words);
                     let stderr = text(&output.stderr);
                     if gpu_is_missing(&output) {
                         return;
@@ -49,7 +49,7 @@ fn follow(name: &str, page: &str) {
                     let makes = |word: &&&str| !["--output", "--chart"].contains(*word);
                     let file = words.iter().skip_while(makes).nth(1);
                     if let Some(file) = file.filter(|file| **file != "-" && code == "0") {
-                        assert!(folder.path().join(file).is_file(), "{name}: {line}");
+                        assert!(folder.join(file).is_file(), "{name}: {line}");
                         made.push(*file);
                     }
                 }
@@ -95,25 +95,22 @@ fn the_lessons_are_true() {
 
 #[test]
 fn a_lesson_is_printed() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for (words, beginning) in [
-        (&["lessons"][..], "Lessons\n-------\n"),
-        (&["lessons", "1"], "1. Euler spirals\n-----"),
-        (&["lessons", "8"], "8. How fine a cloth?\n-----"),
+        ("lessons", "Lessons\n-------\n"),
+        ("lessons 1", "1. Euler spirals\n-----"),
+        ("lessons 8", "8. How fine a cloth?\n-----"),
     ] {
-        let output = a3(folder.path(), words);
+        let output = a3(folder, words);
         assert!(text(&output.stdout).starts_with(beginning), "{words:?}");
     }
-    let said = |words: &[&str]| text(&a3(folder.path(), words).stdout).to_owned();
-    let (asked, told) = (
-        said(&["lessons", "2"]),
-        said(&["lessons", "2", "--answers"]),
-    );
+    let said = |words: &str| text(&a3(folder, words).stdout).to_owned();
+    let (asked, told) = (said("lessons 2"), said("lessons 2 --answers"));
     assert!(asked.contains("Answer: a3 lessons 2 --answers") && !asked.contains("Yes: 56 ms"));
     assert!(
         told.contains("Yes: 56 ms") && !told.contains("--answers"),
         "{told}"
     );
-    let line = refused(folder.path(), &["lessons", "9"], 2);
+    let line = refused(folder, "lessons 9", 2);
     assert!(line.contains("`9`: lessons are numbered 1 to 8"), "{line}");
 }

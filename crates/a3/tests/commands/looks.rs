@@ -11,7 +11,7 @@ use a3_scenes::SCENES;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder, RgbImage, imageops};
 
-use crate::common::{a3, gpu_is_missing, text};
+use crate::common::{Folder, a3, gpu_is_missing, text};
 
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/looks");
 /// Folder of the pictures that are wrong.
@@ -56,7 +56,7 @@ fn shoot(folder: &Path, scene: &str) -> Option<RgbImage> {
         ["--size", &format!("{}x{}", SIZE.0, SIZE.1)],
         ["--output", &format!("{scene}-#.png")],
     ];
-    let output = a3(folder, &words.concat());
+    let output = a3(folder, words.concat());
     if gpu_is_missing(&output) {
         return None;
     }
@@ -159,7 +159,7 @@ fn check(scene: &str, mut picture: RgbImage) -> Option<String> {
 
 #[test]
 fn scenes_look_as_they_did() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let scenes = Mutex::new(SCENES.iter());
     let wrong = Mutex::new(vec![]);
     thread::scope(|scope| {
@@ -168,7 +168,7 @@ fn scenes_look_as_they_did() {
                 loop {
                     let scene = scenes.lock().unwrap().next_back();
                     let Some(scene) = scene else { return };
-                    let Some(picture) = shoot(folder.path(), scene.name) else {
+                    let Some(picture) = shoot(folder, scene.name) else {
                         return;
                     };
                     let why = check(scene.name, picture);

@@ -36,20 +36,13 @@ mod usage;
 mod watch;
 mod words;
 
-use std::fs;
-use std::path::Path;
-
-use common::{a3, complaint};
+use common::{Folder, Words, a3, complaint};
 
 /// Returns the line on stderr of a program that ended with `code` and wrote nothing to its empty
 /// folder.
-fn refused(folder: &Path, words: &[&str], code: i32) -> String {
-    let line = complaint(&a3(folder, words), code);
+fn refused(folder: &Folder, words: impl Words, code: i32) -> String {
+    let line = complaint(&a3(folder, &words), code);
     assert!(line.starts_with("error: "), "{words:?}: {line}");
-    assert_eq!(
-        fs::read_dir(folder).unwrap().count(),
-        0,
-        "{words:?} leaves nothing behind"
-    );
+    assert_eq!(folder.count(), 0, "{words:?} leaves nothing behind");
     line
 }

@@ -1,10 +1,8 @@
 //! The manual and the completion scripts, read by man and by shells.
 
-use std::fs;
-use std::path::Path;
 use std::process::Command;
 
-use crate::common::{a3, asked, complaint, is_missing, text};
+use crate::common::{Folder, a3, asked, complaint, is_missing, said, text};
 
 const COMMANDS: [&str; 14] = [
     "simulate",
@@ -23,17 +21,11 @@ const COMMANDS: [&str; 14] = [
     "man",
 ];
 
-fn said(folder: &Path, words: &[&str]) -> String {
-    let output = a3(folder, words);
-    assert!(output.status.success() && output.stderr.is_empty());
-    text(&output.stdout).to_owned()
-}
-
 #[test]
 fn every_shell_completes_every_command() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
-        let script = said(folder.path(), &["completions", shell]);
+        let script = said(folder, format!("completions {shell}"));
         for command in COMMANDS {
             assert!(script.contains(command), "{shell}: {command}");
         }
@@ -45,7 +37,7 @@ fn every_shell_completes_every_command() {
             }
         }
     }
-    let line = complaint(&a3(folder.path(), &["completions", "tcsh"]), 2);
+    let line = complaint(&a3(folder, "completions tcsh"), 2);
     assert!(line.contains("bash") && line.contains("zsh"), "{line}");
 }
 
@@ -54,19 +46,15 @@ fn bash_takes_its_script() {
     if is_missing("bash") {
         return;
     }
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(
-        folder.path().join("a3.bash"),
-        said(folder.path(), &["completions", "bash"]),
-    )
-    .unwrap();
-    asked(folder.path(), "bash", &["-n", "a3.bash"]);
+    let folder = &Folder::new();
+    folder.write("a3.bash", said(folder, "completions bash"));
+    asked(folder, "bash", "-n a3.bash");
     let complete = |typed: &str, last: usize| {
         let words = format!(
             "source ./a3.bash; COMP_WORDS=({typed}); COMP_CWORD={last}; _a3 a3 \"${{COMP_WORDS[{last}]}}\" \"${{COMP_WORDS[{last}-1]}}\"; \
              echo \"${{COMPREPLY[@]}}\""
         );
-        asked(folder.path(), "bash", &["-c", &words])
+        asked(folder, "bash", ["-c", &words])
     };
     assert_eq!(complete("a3 simu", 1).trim(), "simulate");
     assert_eq!(complete("a3 render --tr", 2).trim(), "--transparent");
@@ -74,7 +62,7 @@ fn bash_takes_its_script() {
     assert_eq!(complete("a3 chart --scene dom", 3).trim(), "dominoes");
     // Where nothing is offered, bash completes files.
     assert_eq!(complete("a3 --scene own", 2).trim(), "");
-    assert!(said(folder.path(), &["completions", "bash"]).contains("-o bashdefault -o default a3"));
+    assert!(said(folder, "completions bash").contains("-o bashdefault -o default a3"));
     assert_eq!(complete("a3 trap", 1).trim(), "trapezoid");
     assert_eq!(complete("a3 simulate symp", 2).trim(), "symplectic");
     assert_eq!(complete("a3 chart --solvers eu", 3).trim(), "euler");
@@ -86,8 +74,8 @@ fn bash_takes_its_script() {
 
 #[test]
 fn the_manual_has_every_command_and_is_set_without_a_warning() {
-    let folder = tempfile::tempdir().unwrap();
-    let manual = said(folder.path(), &["man"]);
+    let folder = &Folder::new();
+    let manual = said(folder, "man");
     assert_eq!(manual.matches(".TH ").count(), 1);
     for command in COMMANDS {
         assert!(
@@ -98,10 +86,10 @@ fn the_manual_has_every_command_and_is_set_without_a_warning() {
     if is_missing("groff") {
         return;
     }
-    fs::write(folder.path().join("a3.1"), manual).unwrap();
+    folder.write("a3.1", manual);
     let output = Command::new("groff")
         .args(["-man", "-Tascii", "-P-cbou", "-ww", "a3.1"])
-        .current_dir(folder.path())
+        .current_dir(folder)
         .output()
         .unwrap();
     assert!(output.status.success());
@@ -120,19 +108,16 @@ fn the_manual_has_every_command_and_is_set_without_a_warning() {
 
 #[test]
 fn a_page_for_each_command() {
-    let folder = tempfile::tempdir().unwrap();
-    said(folder.path(), &["man", "--output", "."]);
-    let page = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    let folder = &Folder::new();
+    said(folder, "man --output .");
+    let page = |name: &str| folder.read(name);
     assert!(page("a3.1").starts_with(".ie"));
     for command in COMMANDS {
         assert!(
             page(&format!("a3-{command}.1")).contains(&format!("a3 {command}").replace('-', "\\-"))
         );
     }
-    assert_eq!(
-        fs::read_dir(folder.path()).unwrap().count(),
-        1 + COMMANDS.len()
-    );
-    let output = a3(folder.path(), &["man", "--output", "nowhere"]);
+    assert_eq!(folder.count(), 1 + COMMANDS.len());
+    let output = a3(folder, "man --output nowhere");
     assert!(complaint(&output, 1).contains("there is no folder nowhere"));
 }

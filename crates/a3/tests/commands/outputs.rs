@@ -5,7 +5,7 @@ use std::fs;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
 
-use crate::common::{a3, command, complaint, text};
+use crate::common::{Folder, a3, command, complaint, succeed, text};
 
 /// A sheet of two triangles, and a scene that hangs it up.
 fn write_scene(folder: &Path, scene: &str, mesh: &str) {
@@ -31,8 +31,7 @@ fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
 
 #[test]
 fn no_output_overwrites_an_input_or_another_output() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
+    let folder = &Folder::new();
     let path = |name: &str| folder.join(name);
     write_scene(folder, "sheet.toml", "sheet.obj");
     write_scene(folder, "frames.toml", "frame-0003.obj");
@@ -44,7 +43,7 @@ fn no_output_overwrites_an_input_or_another_output() {
     fs::write(path("notes.csv"), "buy milk\n").unwrap();
     fs::write(path("notes.json"), "[]").unwrap();
     let before = contents(folder);
-    let sheet = |output| vec!["simulate", "--scene", "sheet.toml", "--output", output];
+    let sheet = |output: &str| format!("simulate --scene sheet.toml --output {output}");
     let (reads, two, no_chart) = (
         "reads this file",
         "two outputs",
@@ -56,25 +55,16 @@ fn no_output_overwrites_an_input_or_another_output() {
         (sheet("hard.obj"), reads),
         (sheet("soft.obj"), reads),
         (
-            vec!["simulate", "--scene", "frames.toml", "-o", "frame-####.obj"],
+            "simulate --scene frames.toml -o frame-####.obj".into(),
             reads,
         ),
-        (
-            vec!["simulate", "--scene", "list.json", "-o", "list.json"],
-            reads,
-        ),
-        ([sheet("a.json"), vec!["--summary", "a.json"]].concat(), two),
-        (
-            [sheet("link.json"), vec!["--summary", "new.json"]].concat(),
-            two,
-        ),
-        (vec!["chart", "--data", "notes.csv"], no_chart),
-        (vec!["chart", "--data", "notes.json"], no_chart),
+        ("simulate --scene list.json -o list.json".into(), reads),
+        (sheet("a.json --summary a.json"), two),
+        (sheet("link.json --summary new.json"), two),
+        ("chart --data notes.csv".into(), no_chart),
+        ("chart --data notes.json".into(), no_chart),
     ] {
-        let words = match words[0] {
-            "simulate" => [&words[..], &["--until", "0.2"]].concat(),
-            _ => words,
-        };
+        let words = words.replace("simulate", "simulate --until 0.2");
         let line = complaint(&a3(folder, &words), 2);
         assert!(line.contains(says), "{words:?}: {line}");
         assert!(contents(folder) == before, "{words:?}");
@@ -82,8 +72,7 @@ fn no_output_overwrites_an_input_or_another_output() {
     // One frame that is the mesh by a link is found before it is written.
     fs::remove_file(path("frame-0003.obj")).unwrap();
     symlink("sheet.obj", path("frame-0003.obj")).unwrap();
-    let words = [&sheet("frame-####.obj")[..], &["--until", "0.2"]].concat();
-    let line = complaint(&a3(folder, &words), 2);
+    let line = complaint(&a3(folder, sheet("frame-####.obj --until 0.2")), 2);
     assert!(
         line.contains("frame-0003.obj") && line.contains(reads),
         "{line}"
@@ -94,20 +83,17 @@ fn no_output_overwrites_an_input_or_another_output() {
     );
     // A path that only looks similar is written.
     for output in ["sheet.json", "sheet.glb", "other-####.obj"] {
-        let words = [&sheet(output)[..], &["--until", "0"]].concat();
-        assert!(a3(folder, &words).status.success(), "{output}");
+        succeed(folder, sheet(output) + " --until 0");
     }
 }
 
 #[test]
 fn a_protected_file_stays_and_a_link_is_followed() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name);
+    let folder = &Folder::new();
+    let path = |name: &str| folder.join(name);
     let run = |output| {
-        let words = [
-            "simulate", "--scene", "simple", "--until", "1", "-o", output,
-        ];
-        a3(folder.path(), &words)
+        let words = format!("simulate --scene simple --until 1 -o {output}");
+        a3(folder, words)
     };
     fs::write(path("old.json"), "old").unwrap();
     fs::set_permissions(path("old.json"), fs::Permissions::from_mode(0o444)).unwrap();
@@ -137,50 +123,38 @@ fn a_protected_file_stays_and_a_link_is_followed() {
 
 #[test]
 fn a_scene_reads_nothing_outside_its_folder() {
-    let folder = tempfile::tempdir().unwrap();
-    let scenes = folder.path().join("scenes");
+    let folder = &Folder::new();
+    let scenes = folder.join("scenes");
     fs::create_dir(&scenes).unwrap();
     write_scene(&scenes, "sheet.toml", "sheet.obj");
-    let words = [
-        "simulate",
-        "--scene",
-        "scenes/sheet.toml",
-        "--until",
-        "0",
-        "-o",
-        "-",
-    ];
-    assert!(a3(folder.path(), &words).status.success());
-    fs::rename(scenes.join("sheet.obj"), folder.path().join("secret.obj")).unwrap();
+    let words = "simulate --scene scenes/sheet.toml --until 0 -o -";
+    succeed(folder, words);
+    fs::rename(scenes.join("sheet.obj"), folder.join("secret.obj")).unwrap();
     symlink("../secret.obj", scenes.join("sheet.obj")).unwrap();
-    let line = complaint(&a3(folder.path(), &words), 2);
+    let line = complaint(&a3(folder, words), 2);
     assert!(
         line.contains("`sheet.obj` leads out of the scene's folder"),
         "{line}"
     );
     fs::remove_file(scenes.join("sheet.obj")).unwrap();
-    fs::rename(folder.path().join("secret.obj"), scenes.join("mesh.obj")).unwrap();
+    fs::rename(folder.join("secret.obj"), scenes.join("mesh.obj")).unwrap();
     symlink("mesh.obj", scenes.join("sheet.obj")).unwrap();
-    assert!(a3(folder.path(), &words).status.success());
+    succeed(folder, words);
 }
 
 /// After two charts at the same time, the file has the runs of both.
 #[test]
 fn two_charts_keep_the_runs_of_both() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = |solvers, output| {
-        let mut words = vec!["chart", "--scene", "chain", "--work", "evaluations"];
-        words.extend(["--until", "1", "--data", "d.csv", "--solvers", solvers]);
-        words.extend(["--output", output]);
-        words
+    let folder = &Folder::new();
+    let words = |more: &str| {
+        format!("chart --scene chain --work evaluations --until 1 --data d.csv --solvers {more}")
     };
-    let [one, two] = [("r,v,t", "1.svg"), ("e,m,s", "2.svg")]
-        .map(|(solvers, output)| command(folder.path(), &words(solvers, output)).spawn());
-    for child in [one, two] {
+    let both = ["r,v,t --output 1.svg", "e,m,s --output 2.svg"];
+    for child in both.map(|more| command(folder, words(more)).spawn()) {
         let output = child.unwrap().wait_with_output().unwrap();
         assert!(output.status.success(), "{}", text(&output.stderr));
     }
-    let data = fs::read_to_string(folder.path().join("d.csv")).unwrap();
+    let data = folder.read("d.csv");
     for solver in [
         "rk4",
         "verlet",
@@ -192,18 +166,14 @@ fn two_charts_keep_the_runs_of_both() {
         assert!(data.contains(&format!(",{solver},")), "{solver}");
     }
     // Nothing is measured again.
-    let words = words("r,v,t,e,m,s", "3.svg");
-    assert!(a3(folder.path(), &words).status.success());
-    assert_eq!(
-        fs::read_to_string(folder.path().join("d.csv")).unwrap(),
-        data
-    );
+    succeed(folder, words("r,v,t,e,m,s --output 3.svg"));
+    assert_eq!(folder.read("d.csv"), data);
 }
 
 /// At a limit for the size of files, every format says which file and why.
 #[test]
 fn a_limit_is_named_by_every_format() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let program = env!("CARGO_BIN_EXE_a3");
     for words in [
         "simulate v 0.01 --until 1 --fps 60 --output x.json",
@@ -222,8 +192,8 @@ fn a_limit_is_named_by_every_format() {
         let script = format!("ulimit -f 8; exec '{program}' {words}");
         let output = std::process::Command::new("sh")
             .args(["-c", &script])
-            .current_dir(folder.path())
-            .env("XDG_RUNTIME_DIR", folder.path())
+            .current_dir(folder)
+            .env("XDG_RUNTIME_DIR", &**folder)
             .output()
             .unwrap();
         if crate::common::gpu_is_missing(&output) {
@@ -233,6 +203,6 @@ fn a_limit_is_named_by_every_format() {
         // The point cache has a mesh beside it, of the same name.
         assert!(line.starts_with("error: x."), "{line}");
         assert!(line.contains("File too large"), "{line}");
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{words}");
+        assert_eq!(folder.count(), 0, "{words}");
     }
 }

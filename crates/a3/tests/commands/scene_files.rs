@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use crate::common::{a3, complaint, simulate, text};
+use crate::common::{Folder, a3, complaint, simulate, succeed, text};
 use a3_scenes::Description;
 use serde_json::Value;
 
@@ -27,7 +27,7 @@ fn listed_particles_and_springs_are_a_scene() {
         let listed: Value = serde_json::from_slice(&fs::read(folder.join(&file)).unwrap()).unwrap();
         let state = &listed["states"][0];
         let until = state["time"].to_string();
-        let run = simulate(folder, &["x", "1e-11", "--scene", &file, "--until", &until]);
+        let run = simulate(folder, format!("x 1e-11 --scene {file} --until {until}"));
         assert_eq!(run["scene"], listed["name"]);
         let rows = |value: &Value| -> Vec<f64> {
             let rows = value.as_array().unwrap().iter();
@@ -50,7 +50,7 @@ fn listed_particles_and_springs_are_a_scene() {
 /// The printed file of a scene gives the same scene.
 #[test]
 fn a_printed_scene_is_the_scene() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for name in [
         "cloth",
         "simple",
@@ -60,20 +60,18 @@ fn a_printed_scene_is_the_scene() {
         "double-pendulum",
         "flag",
     ] {
-        let printed = a3(folder.path(), &["scenes", "--print", name]);
+        let printed = a3(folder, format!("scenes --print {name}"));
         let file = format!("{name}.toml");
-        fs::write(folder.path().join(&file), &printed.stdout).unwrap();
+        folder.write(&file, &printed.stdout);
         let run = |scene: &str| {
-            let mut state = simulate(
-                folder.path(),
-                &["r", "0.01", "--scene", scene, "--until", "0.2"],
-            );
+            let run = format!("r 0.01 --scene {scene} --until 0.2");
+            let mut state = simulate(folder, run);
             state.as_object_mut().unwrap().remove("wall_time");
             state
         };
         assert_eq!(run(name), run(&file), "{name}");
     }
-    let schema = a3(folder.path(), &["scenes", "--schema"]);
+    let schema = a3(folder, "scenes --schema");
     let schema: Value = serde_json::from_slice(&schema.stdout).unwrap();
     assert!(schema["properties"]["cloth"].is_object());
 }
@@ -81,40 +79,30 @@ fn a_printed_scene_is_the_scene() {
 /// A scene names its solver, step and duration, and the command line takes precedence.
 #[test]
 fn a_scene_brings_its_solver_its_step_and_its_time() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let scene = "solver = \"verlet\"\nstep = 0.02\nduration = 0.5\n\
         [[chain]]\nparticles = 2\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nmass = 1\nstiffness = 5\n";
-    fs::write(folder.path().join("own.toml"), scene).unwrap();
-    let run = simulate(folder.path(), &["--scene", "own.toml"]);
+    folder.write("own.toml", scene);
+    let run = simulate(folder, "--scene own.toml");
     assert_eq!(
         (&run["scene"], &run["solver"], &run["step"], &run["time"]),
         (&"own".into(), &"verlet".into(), &0.02.into(), &0.5.into())
     );
-    let run = simulate(folder.path(), &["r", "--scene", "own.toml", "--until", "1"]);
+    let run = simulate(folder, "r --scene own.toml --until 1");
     assert_eq!(
         (&run["solver"], &run["step"], &run["time"]),
         (&"rk4".into(), &0.01.into(), &1.0.into())
     );
-    fs::write(
-        folder.path().join("no-time.toml"),
-        scene.replace("duration = 0.5\n", ""),
-    )
-    .unwrap();
-    let said = complaint(
-        &a3(
-            folder.path(),
-            &["simulate", "--scene", "no-time.toml", "--output", "-"],
-        ),
-        2,
-    );
+    folder.write("no-time.toml", scene.replace("duration = 0.5\n", ""));
+    let said = complaint(&a3(folder, "simulate --scene no-time.toml --output -"), 2);
     assert!(said.contains("--until"), "{said}");
 }
 
 /// The same square as OBJ, as glTF with its data inside, and as GLB.
 #[test]
 fn meshes_are_read() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
+    let folder = &Folder::new();
+    let at = |name: &str| folder.join(name);
     // A quad, with a texture seam that has a corner twice.
     let obj = "mtllib none.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nusemtl red\nf 1/1 2/1 3/1 4/1\n";
     fs::write(at("square.obj"), obj).unwrap();
@@ -150,10 +138,7 @@ fn meshes_are_read() {
     let mut states = vec![];
     for ending in ["obj", "gltf", "glb"] {
         fs::write(at("scene.toml"), SQUARE.replace("obj", ending)).unwrap();
-        states.push(simulate(
-            folder.path(),
-            &["r", "0.01", "--scene", "scene.toml", "--until", "0.1"],
-        ));
+        states.push(simulate(folder, "r 0.01 --scene scene.toml --until 0.1"));
     }
     assert_eq!(states[0]["positions"].as_array().unwrap().len(), 4);
     assert!(states[0] == states[1] && states[1] == states[2]);
@@ -161,19 +146,12 @@ fn meshes_are_read() {
 
 #[test]
 fn what_is_wrong_is_said_with_file_and_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
+    let folder = &Folder::new();
+    let at = |name: &str| folder.join(name);
     let refused = |scene: &str| {
         let begun = Instant::now();
-        let said = complaint(
-            &a3(
-                folder.path(),
-                &[
-                    "simulate", "r", "0.01", "--scene", scene, "--until", "1", "--output", "-",
-                ],
-            ),
-            2,
-        );
+        let run = format!("simulate r 0.01 --scene {scene} --until 1 --output -");
+        let said = complaint(&a3(folder, run), 2);
         assert!(begun.elapsed() < Duration::from_secs(5), "{said}");
         said
     };
@@ -233,42 +211,24 @@ fn what_is_wrong_is_said_with_file_and_line() {
         refused("line.toml").contains("line 1 is longer than 8 MiB")
             || refused("line.toml").starts_with("error: line.toml:1")
     );
-    let said = complaint(&a3(folder.path(), &["--scene", "cloth", "--watch"]), 2);
+    let said = complaint(&a3(folder, "--scene cloth --watch"), 2);
     assert!(said.contains("--watch needs a scene file"), "{said}");
 }
 
 /// A chart of a scene file does not continue from the data of another scene with the same name.
 #[test]
 fn a_chart_knows_which_scene_it_has() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let chain = |stiffness: &str| {
         format!(
             "name = \"own\"\n[[chain]]\nparticles = 2\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nmass = 1\nstiffness = {stiffness}\nvelocity = [0, 1, 0]\npin = [{{ at = [\"first\"] }}]\n"
         )
     };
     let chart = |stiffness: &str| {
-        fs::write(folder.path().join("own.toml"), chain(stiffness)).unwrap();
-        let words = [
-            "chart",
-            "--scene",
-            "own.toml",
-            "--solvers",
-            "r",
-            "--until",
-            "0.2",
-            "--work",
-            "evaluations",
-            "--data",
-            "own.csv",
-            "--output",
-            "own.svg",
-        ];
-        let output = a3(folder.path(), &words);
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        fs::read_to_string(folder.path().join("own.csv"))
-            .unwrap()
-            .lines()
-            .count()
+        folder.write("own.toml", chain(stiffness));
+        let words = "chart --scene own.toml --solvers r --until 0.2 --work evaluations --data own.csv --output own.svg";
+        succeed(folder, words);
+        folder.read("own.csv").lines().count()
     };
     let first = chart("5");
     assert_eq!(chart("5"), first);
@@ -289,7 +249,7 @@ fn documented_scenes_are_scenes() {
     for file in scenes {
         let text = fs::read_to_string(&file).unwrap();
         let description = Description::parse(&text).unwrap();
-        let run = simulate(docs, &["--scene", file.to_str().unwrap()]);
+        let run = simulate(docs, ["--scene", file.to_str().unwrap()]);
         assert_eq!(run["time"].as_f64(), description.duration, "{file:?}");
     }
     let guide = fs::read_to_string(docs.join("scenes.md")).unwrap();
@@ -306,18 +266,15 @@ fn documented_scenes_are_scenes() {
 /// A level mesh that is pinned by its top is pinned everywhere, and a note says so.
 #[test]
 fn a_scene_that_is_pinned_all_over_says_so() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let square = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3 4\n";
-    fs::write(folder.path().join("square.obj"), square).unwrap();
-    fs::write(
-        folder.path().join("level.toml"),
+    folder.write("square.obj", square);
+    folder.write(
+        "level.toml",
         format!("{SQUARE}pin = [{{ at = [\"top\"] }}]\n"),
-    )
-    .unwrap();
-    let words = ["simulate", "r", "0.01", "--scene", "level.toml"];
-    let words = [&words[..], &["--until", "0.1", "--output", "-"]].concat();
-    let output = a3(folder.path(), &words);
-    assert!(output.status.success());
+    );
+    let words = "simulate r 0.01 --scene level.toml --until 0.1 --output -";
+    let output = succeed(folder, words);
     let said = text(&output.stderr);
     assert_eq!(
         said,
@@ -329,15 +286,14 @@ fn a_scene_that_is_pinned_all_over_says_so() {
 /// scene several times says so once.
 #[test]
 fn a_start_that_does_not_fit_is_told_once() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let wire = "[particles]\npositions = [[1, 0, 0]]\nmass = 1\nvelocities = [[0.6, 1, 0]]\n\
                 [[constraint]]\nparticle = 0\n\
                 circle = { center = [0, 0, 0], normal = [0, 0, 1], radius = 1 }\n";
-    fs::write(folder.path().join("wire.toml"), wire).unwrap();
-    let words = ["simplify", "--error", "1e-2", "--until", "0.2", "--scene"];
-    let output = a3(folder.path(), &[&words[..], &["wire.toml"]].concat());
+    folder.write("wire.toml", wire);
+    let words = "simplify --error 1e-2 --until 0.2 --scene";
+    let output = succeed(folder, format!("{words} wire.toml"));
     let said = text(&output.stderr);
-    assert!(output.status.success(), "{said}");
     let note = "note: the velocities at the start do not fit the constraints: impulses changed \
                 them by up to 0.6 m/s";
     assert_eq!(

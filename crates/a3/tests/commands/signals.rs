@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Child, Command};
 use std::time::{Duration, Instant};
 
-use crate::common::{command, text};
+use crate::common::{Folder, Words, command, text};
 
 fn kill(child: &Child, signal: &str) {
     let id = child.id().to_string();
@@ -21,7 +21,7 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 /// Starts a command and waits until it has created its file.
-fn begin(folder: &Path, words: &[&str]) -> Child {
+fn begin(folder: &Path, words: impl Words) -> Child {
     let mut child = command(folder, words).spawn().unwrap();
     let begun = Instant::now();
     while !names(folder).iter().any(|name| name.starts_with(".a3-")) {
@@ -32,7 +32,7 @@ fn begin(folder: &Path, words: &[&str]) -> Child {
     child
 }
 
-const EXPORT: [&str; 6] = ["simulate", "v", "0.001", "--until", "5000", "--output"];
+const EXPORT: &str = "simulate v 0.001 --until 5000 --fps 0.1 --output";
 
 /// Returns whether this test was started by `nohup`, which the program respects.
 fn hangups_are_ignored() -> bool {
@@ -46,19 +46,19 @@ fn hangups_are_ignored() -> bool {
 
 #[test]
 fn every_signal_ends_a_run_with_its_own_code() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for (signal, code) in [("-HUP", 129), ("-INT", 130), ("-TERM", 143)] {
         if signal == "-HUP" && hangups_are_ignored() {
             continue;
         }
         for output in ["x.csv", "x.pc2", "x.glb"] {
-            let words = [&EXPORT[..], &[output, "--fps", "0.1"]].concat();
-            let child = begin(folder.path(), &words);
+            let words = format!("{EXPORT} {output}");
+            let child = begin(folder, &words);
             kill(&child, signal);
             let output = child.wait_with_output().unwrap();
             assert_eq!(output.status.code(), Some(code), "{words:?}");
             assert!(text(&output.stderr).starts_with("interrupted: "));
-            assert_eq!(names(folder.path()), [""; 0], "{words:?}");
+            assert_eq!(names(folder), [""; 0], "{words:?}");
         }
     }
 }
@@ -66,16 +66,14 @@ fn every_signal_ends_a_run_with_its_own_code() {
 /// A film creates its file before it starts the adapter, which may take long.
 #[test]
 fn a_film_ends_while_it_starts() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for output in ["x.gif", "x.mp4"] {
         if output == "x.mp4" && crate::common::is_missing("ffmpeg") {
             continue;
         }
         for milliseconds in [0, 20, 60, 120] {
-            let words = [
-                "render", "--until", "1000", "--size", "320x240", "-o", output,
-            ];
-            let child = begin(folder.path(), &words);
+            let words = format!("render --until 1000 --size 320x240 -o {output}");
+            let child = begin(folder, words);
             std::thread::sleep(Duration::from_millis(milliseconds));
             kill(&child, "-TERM");
             let ended = child.wait_with_output().unwrap();
@@ -84,8 +82,8 @@ fn a_film_ends_while_it_starts() {
             }
             assert_eq!(ended.status.code(), Some(143), "{}", text(&ended.stderr));
             // The frames so far are kept, if there are any.
-            let _ = fs::remove_file(folder.path().join(output));
-            assert_eq!(names(folder.path()), [""; 0], "{milliseconds} ms");
+            let _ = fs::remove_file(folder.join(output));
+            assert_eq!(names(folder), [""; 0], "{milliseconds} ms");
         }
     }
 }
@@ -93,27 +91,14 @@ fn a_film_ends_while_it_starts() {
 /// A command that does not check for signals, because it waits for a reader, is ended nevertheless.
 #[test]
 fn a_run_that_does_not_notice_is_ended() {
-    let folder = tempfile::tempdir().unwrap();
-    let status = Command::new("mkfifo")
-        .arg(folder.path().join("x.csv"))
-        .status();
+    let folder = &Folder::new();
+    let status = Command::new("mkfifo").arg(folder.join("x.csv")).status();
     assert!(status.unwrap().success());
-    let words = [
-        "chart", "--scene", "simple", "--until", "0.1", "--data", "d.csv",
-    ];
-    let data = folder.path().join("d.csv");
-    let pipe = [
-        "--output",
-        "x.svg",
-        "--solvers",
-        "r",
-        "--work",
-        "evaluations",
-    ];
-    fs::rename(folder.path().join("x.csv"), folder.path().join("x.svg")).unwrap();
-    let child = command(folder.path(), &[&words[..], &pipe].concat())
-        .spawn()
-        .unwrap();
+    let words = "chart --scene simple --until 0.1 --data d.csv \
+                 --output x.svg --solvers r --work evaluations";
+    let data = folder.join("d.csv");
+    fs::rename(folder.join("x.csv"), folder.join("x.svg")).unwrap();
+    let child = command(folder, words).spawn().unwrap();
     while !data.exists() {
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -129,11 +114,9 @@ fn a_run_that_does_not_notice_is_ended() {
 /// A step of the implicit midpoint rule on a very large cloth takes many seconds.
 #[test]
 fn a_run_is_ended_within_a_long_step() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = [
-        "simulate", "n", "0.05", "--grid", "400x400", "--until", "10", "-o", "x.csv",
-    ];
-    let child = begin(folder.path(), &words);
+    let folder = &Folder::new();
+    let words = "simulate n 0.05 --grid 400x400 --until 10 -o x.csv";
+    let child = begin(folder, words);
     std::thread::sleep(Duration::from_secs(1));
     let begun = Instant::now();
     kill(&child, "-TERM");
@@ -141,30 +124,25 @@ fn a_run_is_ended_within_a_long_step() {
     assert_eq!(output.status.code(), Some(143), "{}", text(&output.stderr));
     // A second, and more if the machine is busy.
     assert!(begun.elapsed() < Duration::from_secs(4));
-    assert_eq!(names(folder.path()), [""; 0]);
+    assert_eq!(names(folder), [""; 0]);
 }
 
 /// The next run deletes the temporary file of a run that `kill -9` ended, and nothing else.
 #[test]
 fn the_next_run_sweeps_what_a_killed_one_left() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut killed = begin(
-        folder.path(),
-        &[&EXPORT[..], &["x.csv", "--fps", "0.1"]].concat(),
-    );
+    let folder = &Folder::new();
+    let mut killed = begin(folder, format!("{EXPORT} x.csv"));
     killed.kill().unwrap();
     killed.wait().unwrap();
-    assert_eq!(names(folder.path()).len(), 1);
-    let other = folder.path().join("other");
+    assert_eq!(names(folder).len(), 1);
+    let other = folder.join("other");
     fs::create_dir(&other).unwrap();
-    let at_work = begin(&other, &[&EXPORT[..], &["y.csv", "--fps", "0.1"]].concat());
+    let at_work = begin(&other, format!("{EXPORT} y.csv"));
     let name = names(&other).remove(0);
-    fs::hard_link(other.join(&name), folder.path().join(&name)).unwrap();
-    let words = [
-        "simulate", "--scene", "simple", "--until", "1", "-o", "z.json",
-    ];
-    assert!(command(folder.path(), &words).status().unwrap().success());
-    let mut left = names(folder.path());
+    fs::hard_link(other.join(&name), folder.join(&name)).unwrap();
+    let words = "simulate --scene simple --until 1 -o z.json";
+    assert!(command(folder, words).status().unwrap().success());
+    let mut left = names(folder);
     left.sort();
     assert_eq!(left, [&name, "other", "z.json"]);
     kill(&at_work, "-KILL");
@@ -175,17 +153,17 @@ fn the_next_run_sweeps_what_a_killed_one_left() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_run_without_a_terminal_goes_on() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let program = env!("CARGO_BIN_EXE_a3");
     let script =
         format!("trap '' HUP; exec '{program}' simulate v 0.001 --until 100000 -o x.csv --fps 0.1");
     let mut child = Command::new("sh")
         .args(["-c", &script])
-        .current_dir(folder.path())
+        .current_dir(folder)
         .stderr(std::process::Stdio::piped())
         .spawn()
         .unwrap();
-    while names(folder.path()).is_empty() {
+    while names(folder).is_empty() {
         std::thread::sleep(Duration::from_millis(1));
     }
     kill(&child, "-HUP");

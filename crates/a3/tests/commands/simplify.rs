@@ -5,8 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::charts::said;
-use crate::common::{a3, complaint, simulate};
+use crate::common::{Folder, a3, complaint, said, simulate};
 
 /// A cloth in still air, with a useless part of many kinds.
 const USELESS: &str = r#"
@@ -43,10 +42,6 @@ const IDLE: [&str; 7] = [
     "sphere",
     "box",
 ];
-
-fn write(folder: &Path, name: &str, text: &str) {
-    fs::write(folder.join(name), text).unwrap();
-}
 
 /// The number in the second column of a row of the table.
 fn change(table: &str, row: &str) -> f64 {
@@ -90,11 +85,10 @@ fn distance(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
 
 #[test]
 fn useless_parts_are_found_and_effects_are_those_of_runs_by_hand() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    write(folder, "useless.toml", USELESS);
+    let folder = &Folder::new();
+    folder.write("useless.toml", USELESS);
     let words = "simplify --scene useless.toml --error 2e-3 --at-end --until 1 -o lean.toml --data effects.csv";
-    let table = said(folder, &words.split(' ').collect::<Vec<_>>());
+    let table = said(folder, words);
     for part in IDLE {
         let line = table.lines().find(|line| line.starts_with(part)).unwrap();
         assert!(line.ends_with("leave it out"), "{line}");
@@ -104,14 +98,16 @@ fn useless_parts_are_found_and_effects_are_those_of_runs_by_hand() {
         assert!(line.ends_with("needed"), "{line}");
     }
     let run = |scene: &str| {
-        let words = ["rk4", "0.0005", "--scene", scene, "--until", "1"];
-        positions(&simulate(folder, &words))
+        positions(&simulate(
+            folder,
+            format!("rk4 0.0005 --scene {scene} --until 1"),
+        ))
     };
     let whole = run("useless.toml");
     let effects = effects(&folder.join("effects.csv"));
     let without = |line: &str, part: &str, by: &str| {
         assert!(USELESS.contains(line));
-        write(folder, "other.toml", &USELESS.replace(line, by));
+        folder.write("other.toml", USELESS.replace(line, by));
         let by_hand = distance(&whole, &run("other.toml"));
         let &(_, found) = effects.iter().find(|(model, _)| model == part).unwrap();
         // The accurate runs err by up to 4e-5 m.
@@ -125,11 +121,11 @@ fn useless_parts_are_found_and_effects_are_those_of_runs_by_hand() {
     without("gravity = [0, -9.81, 0]", "gravity", "");
     without("[400, 100, 1e-6]", "shear springs", "[400, 0, 1e-6]");
     // The scene that was written, by its own solver.
-    let text = fs::read_to_string(folder.join("lean.toml")).unwrap();
+    let text = folder.read("lean.toml");
     for key in ["floor", "sphere", "box", "strain_limit", "friction"] {
         assert!(!text.contains(key), "{key} in {text}");
     }
-    let lean = simulate(folder, &["--scene", "lean.toml", "--until", "1"]);
+    let lean = simulate(folder, "--scene lean.toml --until 1");
     let error = distance(&whole, &positions(&lean));
     assert!(error < 2e-3, "{error} {table}");
 }
@@ -137,12 +133,11 @@ fn useless_parts_are_found_and_effects_are_those_of_runs_by_hand() {
 /// Savings are the same from one command to the next, though the machine does other work, too.
 #[test]
 fn savings_are_steady() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    write(folder, "useless.toml", USELESS);
+    let folder = &Folder::new();
+    folder.write("useless.toml", USELESS);
     let times = |file: &str| -> Vec<(String, f64)> {
         let words = "simplify --scene useless.toml --error 2e-3 --until 1 --data";
-        said(folder, &words.split(' ').chain([file]).collect::<Vec<_>>());
+        said(folder, format!("{words} {file}"));
         let mut rows = csv::Reader::from_path(folder.join(file)).unwrap();
         let keys = rows.headers().unwrap().clone();
         let at = |key: &str| keys.iter().position(|found| found == key).unwrap();
@@ -164,13 +159,12 @@ fn savings_are_steady() {
 /// (n - i) M g / (n n k) for i up to j. A continuous cloth is lower by M g / k (s - s2 / 2).
 #[test]
 fn the_error_of_a_grid_is_that_of_a_closed_form() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
+    let folder = &Folder::new();
     let scene = "duration = 20\ngravity = [0, -9.81, 0]\ndrag_per_mass = 4\n[[cloth]]\ngrid = [9, 9]\nwidth = 1\n\
          density = 1\nstiffness = [200, 0, 0]\nat = [0, 0, 0]\npin = [{ at = [\"top\"] }]\n";
-    write(folder, "hung.toml", scene);
+    folder.write("hung.toml", scene);
     let words = "simplify --scene hung.toml --error 1e-3 --at-end --until 20 --chart models.svg";
-    let table = said(folder, &words.split(' ').collect::<Vec<_>>());
+    let table = said(folder, words);
     let (n, weight, k) = (9, 9.81, 200.0);
     let lower = |n: usize, j: usize| -> f64 {
         let each = |i: usize| (n - i) as f64 * weight / ((n * n) as f64 * k);
@@ -190,7 +184,7 @@ fn the_error_of_a_grid_is_that_of_a_closed_form() {
     });
     let [said, order] = of_grid(&table);
     assert!((said / truth - 1.0).abs() < 0.15, "{said} {truth}\n{table}");
-    let chart = fs::read_to_string(folder.join("models.svg")).unwrap();
+    let chart = folder.read("models.svg");
     for word in [
         "Models: hung",
         "grid of 3 x 3",
@@ -204,13 +198,12 @@ fn the_error_of_a_grid_is_that_of_a_closed_form() {
 
 #[test]
 fn a_large_grid_is_compared_with_a_coarser_one() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
+    let folder = &Folder::new();
     let scene = "gravity = [0, -9.81, 0]\n[[cloth]]\ngrid = [41, 41]\nwidth = 1\ndensity = 1\nstiffness = [200, 0, 0]\n\
          at = [0, 0, 0]\npin = [{ at = [\"top\"] }]\n";
-    write(folder, "large.toml", scene);
+    folder.write("large.toml", scene);
     let words = "choose --scene large.toml --error 1e-6 --until 0.1";
-    let found = said(folder, &words.split(' ').collect::<Vec<_>>());
+    let found = said(folder, words);
     assert!(
         found.contains("the grid of 41 x 41 differs from one half as fine by "),
         "{found}"
@@ -223,13 +216,12 @@ fn a_large_grid_is_compared_with_a_coarser_one() {
 /// y(s) = (T(s) - T(0)) / w - (V(0) s - w s2 / 2) / k, where V(s) = V(0) - w s and T2 = H2 + V2.
 #[test]
 fn the_error_of_a_grid_is_that_of_a_catenary() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
+    let folder = &Folder::new();
     let scene = "duration = 20\ngravity = [0, -9.81, 0]\ndrag_per_mass = 4\n[[cloth]]\ngrid = [9, 33]\nwidth = 2\n\
          density = 0.5\nstiffness = [60, 0, 0]\nat = [0, 0, 0]\npin = [{ at = [\"left\", \"right\"] }]\n";
-    write(folder, "strip.toml", scene);
+    folder.write("strip.toml", scene);
     let words = "simplify --scene strip.toml --error 1e-3 --at-end --until 20";
-    let table = said(folder, &words.split(' ').collect::<Vec<_>>());
+    let table = said(folder, words);
     let (length, k, w) = (2.0, 60.0, 0.5 * 9.81);
     let up = 0.5 * w * length;
     let x = |s: f64, h: f64| h * s / k + h / w * ((up / h).asinh() - ((up - w * s) / h).asinh());
@@ -245,8 +237,8 @@ fn the_error_of_a_grid_is_that_of_a_catenary() {
     }
     let tension = |s: f64| least.hypot(up - w * s);
     let y = |s: f64| (tension(s) - tension(0.0)) / w - (up * s - 0.5 * w * s * s) / k;
-    let words = ["verner65", "1e-8", "--scene", "strip.toml", "--until", "20"];
-    let found = positions(&simulate(folder, &words));
+    let words = "verner65 1e-8 --scene strip.toml --until 20";
+    let found = positions(&simulate(folder, words));
     let exact: Vec<_> = (0..9 * 33)
         .map(|i| {
             let s = (i % 33) as f64 * length / 32.0;
@@ -262,18 +254,16 @@ fn the_error_of_a_grid_is_that_of_a_catenary() {
 
 #[test]
 fn effects_in_a_file_are_not_measured_again() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
+    let folder = &Folder::new();
     let scene = "gravity = [0, -9.81, 0]\ndrag = 1e-3\n[[cloth]]\ngrid = [5, 5]\nwidth = 1\ndensity = 0.2\n\
          stiffness = [50, 20, 0]\nat = [0, 0, 0]\npin = [{ at = [\"top-left\", \"top-right\"] }]\n";
-    write(folder, "small.toml", scene);
+    folder.write("small.toml", scene);
     let words = "simplify --scene small.toml --error 1e-2 --until 1 --data effects.csv";
-    let words: Vec<_> = words.split(' ').collect();
-    let first = said(folder, &words);
+    let first = said(folder, words);
     let file = folder.join("effects.csv");
     let text = fs::read_to_string(&file).unwrap();
     assert_eq!(effects(&file).len(), 8, "{text}");
-    said(folder, &words);
+    said(folder, words);
     assert_eq!(fs::read_to_string(&file).unwrap(), text);
     // A value that somebody changed shows in the table. Without checksums, it is believed.
     let drag = change(&first, "drag");
@@ -286,18 +276,18 @@ fn effects_in_a_file_are_not_measured_again() {
         values.join(",") + "\n"
     });
     fs::write(&file, lines.collect::<String>()).unwrap();
-    let table = said(folder, &words);
+    let table = said(folder, words);
     assert!(
         change(&table, "drag") == 0.12 || change(&table, "drag") == 0.13,
         "{drag} {table}"
     );
     // Another quantity and another scope have their own effects.
-    for other in [&["--of", "centre"][..], &["--at-end"]] {
-        let words = [&words[..], other].concat();
-        assert!(change(&said(folder, &words), "drag") < 0.1, "{other:?}");
+    for other in ["--of centre", "--at-end"] {
+        let table = said(folder, format!("{words} {other}"));
+        assert!(change(&table, "drag") < 0.1, "{other:?}");
     }
-    write(folder, "effects.csv", "buy,milk\n");
-    let said = complaint(&a3(folder, &words), 2);
+    folder.write("effects.csv", "buy,milk\n");
+    let said = complaint(&a3(folder, words), 2);
     assert!(
         said.contains("does not hold the effects of models"),
         "{said}"
@@ -306,18 +296,18 @@ fn effects_in_a_file_are_not_measured_again() {
 
 #[test]
 fn quantities_of_their_own_are_compared() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
+    let folder = &Folder::new();
     // A free fall with drag on the mass: the centre falls by g t2 / 2 without drag, and the energy
     // stays.
     let scene = "gravity = [0, -10, 0]\ndrag_per_mass = 0.5\n[[cloth]]\ngrid = [3, 3]\nwidth = 1\ndensity = 0.9\n\
          stiffness = [50, 20, 0]\nat = [0, 0, 0]\n";
-    write(folder, "fall.toml", scene);
+    folder.write("fall.toml", scene);
     let of = |quantity: &str| {
-        let words = format!(
-            "simplify --scene fall.toml --error 1e-4 --until 1 --of {quantity} --data {quantity}.csv"
+        let words = "simplify --scene fall.toml --error 1e-4 --until 1";
+        said(
+            folder,
+            format!("{words} --of {quantity} --data {quantity}.csv"),
         );
-        said(folder, &words.split(' ').collect::<Vec<_>>());
         let file = folder.join(format!("{quantity}.csv"));
         let effects = effects(&file);
         effects
@@ -337,24 +327,15 @@ fn quantities_of_their_own_are_compared() {
     let lost = mass * (g * fallen - 0.5 * v * v);
     let energy = of("energy");
     assert!((energy - lost).abs() < 1e-4, "{energy} {lost}");
-    let words = [
-        "simplify",
-        "--error",
-        "1e-2",
-        "--of",
-        "energy",
-        "--particle",
-        "3",
-    ];
-    let said = complaint(&a3(folder, &words), 2);
+    let words = "simplify --error 1e-2 --of energy --particle 3";
+    let said = complaint(&a3(folder, words), 2);
     assert!(said.contains("--particle: only positions"), "{said}");
 }
 
 #[test]
 fn what_cannot_be_simplified_is_refused_in_a_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    write(folder, "there.toml", "");
+    let folder = &Folder::new();
+    folder.write("there.toml", "");
     for (words, why) in [
         ("simplify", "`--error E` is missing"),
         (
@@ -378,13 +359,12 @@ fn what_cannot_be_simplified_is_refused_in_a_line() {
             "the motion of this scene over 10 s is itself known to ",
         ),
     ] {
-        let words: Vec<_> = words.split(' ').collect();
-        let output = a3(folder, &words);
+        let output = a3(folder, words);
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{said}");
         assert!(said.contains(why), "{said}");
     }
-    let said = complaint(&a3(folder, &["simplify", "--error", "0"]), 2);
+    let said = complaint(&a3(folder, "simplify --error 0"), 2);
     assert!(said.contains("--error 0"), "{said}");
     assert!(!folder.join("lean.json").exists());
 }

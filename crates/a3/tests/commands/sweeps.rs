@@ -6,8 +6,7 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::charts::said;
-use crate::common::{a3, command, complaint};
+use crate::common::{Folder, a3, command, complaint, said};
 
 /// Three solvers, one of which blows up, with four settings each, on six chains.
 const SWEEP: &str = "scene = \"chain\"
@@ -22,15 +21,15 @@ chain.mass = [0.5, 1, 2]
 
 /// Returns the table and the chart of a sweep that was made by one command.
 fn whole() -> [Vec<u8>; 2] {
-    let folder = begun(SWEEP);
-    let told = said(folder.path(), &["sweep", "s.toml"]);
+    let folder = &begun(SWEEP);
+    let told = said(folder, "sweep s.toml");
     assert!(told.contains("72 runs, of which "), "{told}");
-    collected(folder.path())
+    collected(folder)
 }
 
-fn begun(sweep: &str) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("s.toml"), sweep).unwrap();
+fn begun(sweep: &str) -> Folder {
+    let folder = Folder::new();
+    folder.write("s.toml", sweep);
     folder
 }
 
@@ -50,25 +49,22 @@ fn runs(folder: &Path) -> Vec<(std::path::PathBuf, Vec<u8>)> {
 #[test]
 fn shares_in_any_order_are_one_run() {
     let whole = whole();
-    let folder = begun(SWEEP);
+    let folder = &begun(SWEEP);
     for share in ["3/3", "1/3", "2/3"] {
-        assert!(!folder.path().join("a3-sweep-s.csv").exists());
-        said(folder.path(), &["sweep", "s.toml", "--only", share]);
+        assert!(!folder.join("a3-sweep-s.csv").exists());
+        said(folder, format!("sweep s.toml --only {share}"));
     }
-    said(folder.path(), &["sweep", "s.toml", "--collect"]);
-    assert!(collected(folder.path()) == whole);
+    said(folder, "sweep s.toml --collect");
+    assert!(collected(folder) == whole);
     // One run by its id, as on another machine.
-    let plan = said(folder.path(), &["sweep", "s.toml", "--plan"]);
+    let plan = said(folder, "sweep s.toml --plan");
     assert_eq!(plan.lines().count(), 72);
     let id = plan.lines().nth(40).unwrap().split('\t').next().unwrap();
-    let other = begun(SWEEP);
-    let told = said(other.path(), &["sweep", "s.toml", "--only", id]);
+    let other = &begun(SWEEP);
+    let told = said(other, format!("sweep s.toml --only {id}"));
     assert!(told.contains("72 runs, 1 done"), "{told}");
-    let [(path, bytes)] = runs(other.path()).try_into().unwrap();
-    let there = folder
-        .path()
-        .join("a3-sweep-s")
-        .join(path.file_name().unwrap());
+    let [(path, bytes)] = runs(other).try_into().unwrap();
+    let there = folder.join("a3-sweep-s").join(path.file_name().unwrap());
     assert!(path.file_stem().unwrap() == id && fs::read(there).unwrap() == bytes);
     // The table has a line for each run, with its keys, and the time at which a run blew up.
     let mut table = csv::Reader::from_reader(&whole[0][..]);
@@ -91,50 +87,47 @@ fn shares_in_any_order_are_one_run() {
 #[test]
 fn kills_at_random_moments_lose_nothing() {
     let whole = whole();
-    let folder = begun(SWEEP);
+    let folder = &begun(SWEEP);
     let mut moment: u64 = 1;
     for _ in 0..20 {
         moment = moment
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1);
-        let mut child = command(folder.path(), &["sweep", "s.toml"])
-            .spawn()
-            .unwrap();
+        let mut child = command(folder, "sweep s.toml").spawn().unwrap();
         sleep(Duration::from_millis(moment >> 58));
         child.kill().unwrap();
         child.wait().unwrap();
     }
-    said(folder.path(), &["sweep", "s.toml"]);
-    assert!(collected(folder.path()) == whole);
-    assert_eq!(runs(folder.path()).len(), 72);
+    said(folder, "sweep s.toml");
+    assert!(collected(folder) == whole);
+    assert_eq!(runs(folder).len(), 72);
 }
 
 #[test]
 fn two_processes_work_in_one_folder() {
     let whole = whole();
-    let folder = begun(SWEEP);
-    let words = ["sweep", "s.toml"];
-    let children = [(); 2].map(|()| command(folder.path(), &words).spawn().unwrap());
+    let folder = &begun(SWEEP);
+    let children = [(); 2].map(|()| command(folder, "sweep s.toml").spawn().unwrap());
     for mut child in children {
         assert!(child.wait().unwrap().success());
     }
-    assert!(collected(folder.path()) == whole);
-    assert_eq!(runs(folder.path()).len(), 72);
+    assert!(collected(folder) == whole);
+    assert_eq!(runs(folder).len(), 72);
 }
 
 #[test]
 fn a_damaged_run_is_done_again() {
-    let folder = begun(&SWEEP.replace("[0.5, 1, 2]", "1"));
-    said(folder.path(), &["sweep", "s.toml"]);
-    let all = runs(folder.path());
-    let whole = collected(folder.path());
+    let folder = &begun(&SWEEP.replace("[0.5, 1, 2]", "1"));
+    said(folder, "sweep s.toml");
+    let all = runs(folder);
+    let whole = collected(folder);
     let (path, bytes) = &all[5];
     let mut changed = bytes.clone();
     let at = bytes.len() - 40;
     changed[at] ^= 1;
     for wrong in [&changed[..], &bytes[..at], b""] {
         fs::write(path, wrong).unwrap();
-        let output = a3(folder.path(), &["sweep", "s.toml", "--status"]);
+        let output = a3(folder, "sweep s.toml --status");
         let line = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(
             line.contains("it is damaged") && line.lines().count() == 1,
@@ -145,18 +138,18 @@ fn a_damaged_run_is_done_again() {
             told.contains("24 runs, 23 done") && told.contains("1 missing"),
             "{told}"
         );
-        let line = a3(folder.path(), &["sweep", "s.toml", "--collect"]);
+        let line = a3(folder, "sweep s.toml --collect");
         assert_eq!(line.status.code(), Some(1));
-        assert!(a3(folder.path(), &["sweep", "s.toml"]).status.success());
-        assert!(runs(folder.path()) == all && collected(folder.path()) == whole);
+        assert!(a3(folder, "sweep s.toml").status.success());
+        assert!(runs(folder) == all && collected(folder) == whole);
     }
 }
 
 #[test]
 fn runs_of_other_versions_and_sweeps_are_left_alone() {
-    let folder = begun(&SWEEP.replace("[0.5, 1, 2]", "1"));
-    said(folder.path(), &["sweep", "s.toml"]);
-    let all = runs(folder.path());
+    let folder = &begun(&SWEEP.replace("[0.5, 1, 2]", "1"));
+    said(folder, "sweep s.toml");
+    let all = runs(folder);
     // An older version wrote this one.
     let text = String::from_utf8(all[0].1.clone()).unwrap();
     let version = env!("CARGO_PKG_VERSION");
@@ -166,10 +159,10 @@ fn runs_of_other_versions_and_sweeps_are_left_alone() {
         before.replacen(&format!("\n{version}"), "\n0.0.9", 1)
     );
     let old = format!("{before}{:08x}\n", crc32fast::hash(before.as_bytes()));
-    let there = folder.path().join("a3-sweep-s/0123456789abcdef.csv");
+    let there = folder.join("a3-sweep-s/0123456789abcdef.csv");
     fs::write(&there, &old).unwrap();
-    for words in [&["sweep", "s.toml"][..], &["sweep", "s.toml", "--status"]] {
-        let output = a3(folder.path(), words);
+    for words in ["sweep s.toml", "sweep s.toml --status"] {
+        let output = a3(folder, words);
         let line = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.success(), "{line}");
         assert!(
@@ -252,29 +245,18 @@ fn a_sweep_that_cannot_be_is_refused_in_a_line() {
         (base.into(), "--only 0123456789abcdef", "no run of this id"),
         (base.into(), "--plan --status", "not both"),
     ] {
-        let folder = begun(&sweep);
-        let words: Vec<_> = ["sweep", "s.toml"]
-            .into_iter()
-            .chain(words.split_whitespace())
-            .collect();
-        let line = complaint(&a3(folder.path(), &words), 2);
+        let folder = &begun(&sweep);
+        let of_file = words.is_empty();
+        let line = complaint(&a3(folder, format!("sweep s.toml {words}")), 2);
         assert!(line.contains(why), "{sweep}: {line}");
-        let of_file = words.len() == 2;
         assert!(!of_file || line.starts_with("error: s.toml:"), "{line}");
-        assert_eq!(
-            fs::read_dir(folder.path()).unwrap().count(),
-            1,
-            "{sweep}: nothing is left behind"
-        );
+        assert_eq!(folder.count(), 1, "{sweep}: nothing is left behind");
     }
-    let folder = begun(base);
-    let line = complaint(&a3(folder.path(), &["sweep", "s.toml", "--collect"]), 1);
+    let folder = &begun(base);
+    let line = complaint(&a3(folder, "sweep s.toml --collect"), 1);
     assert!(
         line.contains("16 of 16 runs are missing") || line.contains("runs are missing"),
         "{line}"
     );
-    assert!(
-        complaint(&a3(folder.path(), &["sweep", "no.toml"]), 2)
-            .contains("no.toml: it could not be read")
-    );
+    assert!(complaint(&a3(folder, "sweep no.toml"), 2).contains("no.toml: it could not be read"));
 }

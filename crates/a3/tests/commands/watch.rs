@@ -1,11 +1,8 @@
 //! Messages about gained energy and unmet constraints, and the advice in them.
 
-use std::fs;
-use std::path::Path;
-
 use serde_json::Value;
 
-use crate::common::{a3, complaint, text};
+use crate::common::{Folder, a3, complaint, succeed, text};
 
 const STRAIGHT: &str = "gravity = [0, -9.81, 0]\n[particles]\n\
     positions = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]\nmass = 1\npin = [{ particles = [0, 2] }]\n\
@@ -27,31 +24,25 @@ const AGAINST: &str = "[[body]]\nparts = [{ box = [0.2, 0.2, 0.2] }]\nmass = 1\n
     [[joint]]\nbody = 0\nball = [0, 0, 0]\n";
 
 /// Returns the arguments of a run of this scene, after `a3 simulate`.
-fn words<'a>(folder: &Path, scene: &str, more: &'a str) -> Vec<&'a str> {
-    fs::write(folder.join("scene.toml"), scene).unwrap();
-    let files = "--scene scene.toml -o x.json --summary s.json";
-    ["simulate"]
-        .into_iter()
-        .chain(more.split(' '))
-        .chain(files.split(' '))
-        .collect()
+fn words(folder: &Folder, scene: &str, more: &str) -> String {
+    folder.write("scene.toml", scene);
+    format!("simulate {more} --scene scene.toml -o x.json --summary s.json")
 }
 
 /// Returns the stderr of a run of this scene, and its summary.
 fn told(scene: &str, more: &str) -> (String, Value) {
-    let folder = tempfile::tempdir().unwrap();
-    let output = a3(folder.path(), &words(folder.path(), scene, more));
+    let folder = &Folder::new();
+    let output = succeed(folder, words(folder, scene, more));
     let said = text(&output.stderr).to_owned();
-    assert!(output.status.success(), "{said}");
-    let summary = fs::read(folder.path().join("s.json")).unwrap();
+    let summary = folder.bytes("s.json");
     (said, serde_json::from_slice(&summary).unwrap())
 }
 
 /// Returns the error of a run of this scene that leaves no file.
 fn failed(scene: &str, more: &str, code: i32) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    let line = complaint(&a3(folder.path(), &words(folder.path(), scene, more)), code);
-    assert!(!folder.path().join("x.json").exists());
+    let folder = &Folder::new();
+    let line = complaint(&a3(folder, words(folder, scene, more)), code);
+    assert!(!folder.join("x.json").exists());
     line
 }
 
@@ -105,10 +96,10 @@ fn the_end_of_a_short_run_is_looked_at() {
 
 #[test]
 fn advice_held_for_as_long() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let run = |step: &str| {
         let words = format!("simulate t {step} --scene double-pendulum --until 60 -o x.json");
-        a3(folder.path(), &words.split(' ').collect::<Vec<_>>())
+        a3(folder, words)
     };
     let line = complaint(&run("0.1"), 1);
     let (_, advice) = line.split_once("; a step of ").unwrap();

@@ -1,5 +1,6 @@
 //! Messages about arguments that are not understood, word for word.
 
+use crate::common::Folder;
 use crate::refused;
 
 /// Arguments, and the start of the message about them.
@@ -171,10 +172,9 @@ const WRONG: &[(&str, &str)] = &[
 
 #[test]
 fn words_that_are_not_understood_are_refused_in_plain_english() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for (words, expected) in WRONG {
-        let typed: Vec<_> = words.split(' ').collect();
-        let line = refused(folder.path(), &typed, 2);
+        let line = refused(folder, words, 2);
         assert!(
             line.starts_with(&format!("error: {expected}")),
             "a3 {words}\n{line}\n{expected}"

@@ -2,7 +2,10 @@
 
 #![allow(dead_code, reason = "not every test needs all of it")]
 
+use std::fmt::Debug;
+use std::fs;
 use std::io::Write;
+use std::ops::Deref;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
@@ -32,11 +35,90 @@ pin = [
 ]
 "#;
 
+/// Words of a command line: a text, which is split at its spaces, or a list.
+pub trait Words: Debug {
+    fn list(&self) -> Vec<&str>;
+}
+
+impl Words for str {
+    fn list(&self) -> Vec<&str> {
+        self.split_whitespace().collect()
+    }
+}
+
+impl Words for String {
+    fn list(&self) -> Vec<&str> {
+        self.as_str().list()
+    }
+}
+
+impl Words for Vec<&str> {
+    fn list(&self) -> Vec<&str> {
+        self.clone()
+    }
+}
+
+impl<const N: usize> Words for [&str; N] {
+    fn list(&self) -> Vec<&str> {
+        self.to_vec()
+    }
+}
+
+impl<W: Words + ?Sized> Words for &W {
+    fn list(&self) -> Vec<&str> {
+        (**self).list()
+    }
+}
+
+/// Folder of a test.
+pub struct Folder(tempfile::TempDir);
+
+impl Folder {
+    pub fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    pub fn write(&self, name: impl AsRef<Path>, contents: impl AsRef<[u8]>) {
+        fs::write(self.join(name), contents).unwrap();
+    }
+
+    pub fn bytes(&self, name: &str) -> Vec<u8> {
+        fs::read(self.join(name)).unwrap()
+    }
+
+    pub fn read(&self, name: &str) -> String {
+        String::from_utf8(self.bytes(name)).unwrap()
+    }
+
+    pub fn json(&self, name: &str) -> Value {
+        serde_json::from_slice(&self.bytes(name)).unwrap()
+    }
+
+    /// Returns the number of its files.
+    pub fn count(&self) -> usize {
+        fs::read_dir(self).unwrap().count()
+    }
+}
+
+impl Deref for Folder {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+impl AsRef<Path> for Folder {
+    fn as_ref(&self) -> &Path {
+        self
+    }
+}
+
 /// Returns a command that runs the program without a display.
-pub fn command(folder: &Path, words: &[&str]) -> Command {
+pub fn command(folder: &Path, words: impl Words) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_a3"));
     command
-        .args(words)
+        .args(words.list())
         .current_dir(folder)
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
@@ -49,7 +131,7 @@ pub fn command(folder: &Path, words: &[&str]) -> Command {
     command
 }
 
-pub fn a3(folder: &Path, words: &[&str]) -> Output {
+pub fn a3(folder: &Path, words: impl Words) -> Output {
     command(folder, words).output().unwrap()
 }
 
@@ -57,11 +139,26 @@ pub fn text(bytes: &[u8]) -> &str {
     std::str::from_utf8(bytes).unwrap()
 }
 
-/// Runs `a3 simulate`, and returns the state that it writes to standard output.
-pub fn simulate(folder: &Path, words: &[&str]) -> Value {
-    let words = [&["simulate"], words, &["--output", "-"]].concat();
+/// Runs the program, which must succeed.
+pub fn succeed(folder: &Path, words: impl Words) -> Output {
     let output = a3(folder, &words);
-    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{words:?}: {}",
+        text(&output.stderr)
+    );
+    output
+}
+
+/// Runs the program, which must succeed, and returns its standard output.
+pub fn said(folder: &Path, words: impl Words) -> String {
+    text(&succeed(folder, words).stdout).to_owned()
+}
+
+/// Runs `a3 simulate`, and returns the state that it writes to standard output.
+pub fn simulate(folder: &Path, words: impl Words) -> Value {
+    let words = [&["simulate"], &words.list()[..], &["--output", "-"]].concat();
+    let output = succeed(folder, words);
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
@@ -116,9 +213,9 @@ pub fn is_missing(program: &str) -> bool {
 }
 
 /// Runs a program that checks files, and returns its output. It must succeed.
-pub fn asked(folder: &Path, program: &str, words: &[&str]) -> String {
+pub fn asked(folder: &Path, program: &str, words: impl Words) -> String {
     let output = Command::new(program)
-        .args(words)
+        .args(words.list())
         .current_dir(folder)
         .output()
         .unwrap();

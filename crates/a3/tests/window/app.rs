@@ -8,8 +8,9 @@ use std::process::{Child, ExitStatus, Stdio};
 use std::sync::{Arc, Mutex};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
-use std::{env, fs};
+use std::{env, fmt, fs};
 
+use crate::common::Words;
 use crate::display::{Display, MAX_WAIT, until};
 use crate::screen::Screen;
 
@@ -46,24 +47,19 @@ fn collect(stream: impl Read + Send + 'static) -> Arc<Mutex<Vec<String>>> {
 }
 
 impl<'d> App<'d> {
-    /// Starts the program, and tries up to three times, with a message: occasionally its window
-    /// does not appear, for an unknown reason.
-    pub fn open(display: &'d Display, folder: &Path, words: &[&str]) -> Self {
-        (0..3)
-            .find_map(|_| Self::try_open(display, folder, words))
-            .expect("no window in three tries")
-    }
-
-    pub fn try_open(display: &'d Display, folder: &Path, words: &[&str]) -> Option<Self> {
+    /// Starts the program; `None`, with a message, if its window does not appear, which happens
+    /// occasionally, for an unknown reason.
+    pub fn try_open(display: &'d Display, words: &str) -> Option<Self> {
+        let folder = &display.home;
         let mut child = display
             .command(env!("CARGO_BIN_EXE_a3"))
-            .args(words)
+            .args(words.list())
             .arg("--status")
             .current_dir(folder)
-            .env("XDG_RUNTIME_DIR", folder)
+            .env("XDG_RUNTIME_DIR", &**folder)
             .stdout(Stdio::piped())
-            .env("XDG_CACHE_HOME", folder)
-            .env("XDG_CONFIG_HOME", folder)
+            .env("XDG_CACHE_HOME", &**folder)
+            .env("XDG_CONFIG_HOME", &**folder)
             // A test may put programs there that replace the system's own.
             .env("PATH", first_in_path(folder))
             .stderr(Stdio::piped())
@@ -73,7 +69,7 @@ impl<'d> App<'d> {
         let said = collect(child.stdout.take().unwrap());
         let begun = Instant::now();
         let window = loop {
-            let found = display.xdotool(&["search", "--onlyvisible", "--name", "^a3: "]);
+            let found = display.xdotool(["search", "--onlyvisible", "--name", "^a3: "]);
             if let Some(window) = found.lines().next() {
                 break window.to_owned();
             }
@@ -92,7 +88,7 @@ impl<'d> App<'d> {
             }
             sleep(Duration::from_millis(20));
         };
-        display.xdotool(&["windowactivate", "--sync", &window]);
+        display.xdotool(["windowactivate", "--sync", &window]);
         let app = Self {
             display,
             child,
@@ -100,9 +96,7 @@ impl<'d> App<'d> {
             lines,
             said,
         };
-        until("a first frame", || {
-            (app.number("frames")? > 2.0).then_some(())
-        });
+        app.wait("frames", |frames| frames > 2.0);
         Some(app)
     }
 
@@ -142,7 +136,7 @@ impl<'d> App<'d> {
     pub fn corner(&self) -> (i32, i32) {
         let text = self
             .display
-            .xdotool(&["getwindowgeometry", "--shell", &self.window]);
+            .xdotool(["getwindowgeometry", "--shell", &self.window]);
         let value = |name| {
             text.lines()
                 .find_map(|line| line.strip_prefix(name)?.parse().ok())
@@ -159,21 +153,41 @@ impl<'d> App<'d> {
     }
 
     pub fn press(&self, key: &str) {
-        self.display.xdotool(&["key", key]);
+        self.display.xdotool(["key", key]);
+    }
+
+    /// Moves the pointer to a place in the window (px).
+    pub fn point(&self, x: impl fmt::Display, y: impl fmt::Display) {
+        self.point_and(x, y, "");
+    }
+
+    /// Moves the pointer to a place in the window (px), and does what further words say.
+    pub fn point_and(&self, x: impl fmt::Display, y: impl fmt::Display, words: &str) {
+        let words = format!("mousemove --window {} {x} {y} {words}", self.window);
+        self.display.xdotool(words);
+    }
+
+    /// Waits until a number of the status is as wanted.
+    pub fn wait(&self, key: &str, is_so: impl Fn(f64) -> bool) {
+        until(key, || is_so(self.number(key)?).then_some(()));
+    }
+
+    /// Sets the size of the window (px).
+    pub fn resize(&self, [width, height]: [u32; 2]) {
+        let words = format!("windowsize {} {width} {height}", self.window);
+        self.display.xdotool(words);
     }
 
     /// Presses a key, and waits for its effect.
     pub fn press_for(&self, key: &str, name: &str, value: &str) {
-        self.display.xdotool(&["key", key]);
+        self.press(key);
         self.expect(name, value);
     }
 
     /// Waits for further frames.
     pub fn expect_frames(&self) {
         let before = self.number("frames").unwrap();
-        until("more frames", || {
-            (self.number("frames")? > before + 2.0).then_some(())
-        });
+        self.wait("frames", |frames| frames > before + 2.0);
     }
 
     /// Waits until a paused program draws no more, and returns the screen.

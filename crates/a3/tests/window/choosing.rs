@@ -3,7 +3,6 @@
 use std::fs;
 use std::process::Stdio;
 
-use crate::app::App;
 use crate::display::{Display, until};
 
 #[test]
@@ -11,8 +10,7 @@ fn lists() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let app = App::open(&display, folder.path(), &["t", "0.01"]);
+    let app = display.open_app("t 0.01");
     // In a list, letters are typed: otherwise t would show the next scene, and Esc would quit.
     app.press_for("o", "list", "true");
     for letter in ["d", "o", "u", "b", "t"] {
@@ -33,13 +31,13 @@ fn lists() {
     app.press_for("space", "paused", "true");
     app.press_for("o", "list", "true");
     app.still_screen();
-    display.xdotool(&["mousemove", "--window", &app.window, "450", "400"]);
-    display.xdotool(&["click", "1"]);
+    app.point(450, 400);
+    display.xdotool("click 1");
     app.expect("list", "false");
     assert_ne!(app.get("scene"), "double-pendulum");
     app.press_for("o", "list", "true");
-    display.xdotool(&["mousemove", "--window", &app.window, "1200", "650"]);
-    display.xdotool(&["click", "1"]);
+    app.point(1200, 650);
+    display.xdotool("click 1");
     app.expect("list", "false");
     app.quit();
 }
@@ -49,10 +47,9 @@ fn copying_the_command_line() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let words = ["v", "0.005", "--scene", "chain", "--paused"];
+    let words = "v 0.005 --scene chain --paused";
     // The clipboard is lost when the program ends.
-    let app = App::open(&display, folder.path(), &words);
+    let app = display.open_app(words);
     app.press("y");
     until("a line on the terminal", || {
         let text = app.said();
@@ -68,11 +65,11 @@ fn copying_the_command_line() {
         text.contains("a3 verlet 0.005 --scene chain --colour speed --paused")
             .then_some(())
     });
-    let file = folder.path().join("a3-chain-1.toml");
+    let file = display.home.join("a3-chain-1.toml");
     assert!(!file.exists());
     app.press_for("Delete", "pins", "0");
     app.press("y");
-    let file = folder.path().join("a3-chain-1.toml");
+    let file = display.home.join("a3-chain-1.toml");
     until("a scene file", || file.exists().then_some(()));
     until("a line that names it", || {
         let text = app.said();

@@ -22,9 +22,8 @@ fn errors_in_colour() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let words = ["compare", "r:0.05", "r:0.02", "--scene", "simple"];
-    let app = App::open(&display, folder.path(), &words);
+    let words = "compare r:0.05 r:0.02 --scene simple";
+    let app = display.open_app(words);
     // The button that films is red, too.
     let (left, top) = app.corner();
     let reds = || {
@@ -47,9 +46,8 @@ fn comparing() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let words = ["compare", "e:0.05", "r:0.05", "--scene", "simple"];
-    let app = App::open(&display, folder.path(), &words);
+    let words = "compare e:0.05 r:0.05 --scene simple";
+    let app = display.open_app(words);
     assert_eq!(app.get("solvers"), "euler,rk4");
     let both = |key: &str| -> Option<(f64, f64)> {
         let values = app.get(key);
@@ -65,20 +63,20 @@ fn comparing() {
 
     // Plus acts on all panes, a digit on the pane under the pointer.
     app.press_for("plus", "step_sizes", "0.06,0.06");
-    display.xdotool(&["mousemove", "--window", &app.window, "1000", "600"]);
+    app.point(1000, 600);
     app.press_for("2", "solvers", "euler,trapezoid");
-    display.xdotool(&["mousemove", "--window", &app.window, "200", "600"]);
+    app.point(200, 600);
     app.press_for("4", "solvers", "rk4,trapezoid");
 
     app.press("p");
-    let picture = folder.path().join("a3-simple-1.png");
+    let picture = display.home.join("a3-simple-1.png");
     until("a picture", || picture.exists().then_some(()));
     let picture = image::open(&picture).unwrap();
     assert_eq!((picture.width(), picture.height()), (1280, 720));
 
     // Sizes with other layouts of the panes.
-    for (width, height) in [("260", "860"), ("90", "70"), ("1280", "720")] {
-        display.xdotool(&["windowsize", &app.window, width, height]);
+    for [width, height] in [[260, 860], [90, 70], [1280, 720]] {
+        app.resize([width, height]);
         app.expect("size", &format!("{width}x{height}"));
         app.expect_frames();
     }
@@ -91,9 +89,7 @@ fn comparing() {
         app.press("minus");
     }
     app.press_for("r", "lost", "false,false");
-    until("the cloth to hang", || {
-        (app.number("time")? > 1.0).then_some(())
-    });
+    app.wait("time", |time| time > 1.0);
     let (left, top) = app.corner();
     let halves = |screen: &Screen, is: fn([u8; 3]) -> bool| {
         let half = |k: i32| left + 642 * k..left + 642 * k + 638;
@@ -106,12 +102,9 @@ fn comparing() {
         halves(&screen, is_red)
     );
     let (x, y) = (1280 * 3 / 4 + 40, 330);
-    let go = |x: i32, y: i32| {
-        let (x, y) = (x.to_string(), y.to_string());
-        display.xdotool(&["mousemove", "--window", &app.window, &x, &y]);
-    };
+    let go = |x: i32, y: i32| app.point(x, y);
     go(x, y);
-    display.xdotool(&["mousedown", "1"]);
+    display.xdotool("mousedown 1");
     let hands = || hands(&app);
     let (_, near) = until("a hand in each pane", hands);
     assert!(
@@ -135,7 +128,7 @@ fn comparing() {
         go(x + dx, y + dy);
         None
     });
-    display.xdotool(&["mouseup", "1"]);
+    display.xdotool("mouseup 1");
     app.expect("grabbed", "-");
     app.expect("lost", "false,false");
 

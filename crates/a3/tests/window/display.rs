@@ -7,8 +7,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use crate::app::App;
+use crate::common::{Folder, Words};
 use crate::screen::Screen;
-use tempfile::TempDir;
 
 /// Longest time to wait for anything.
 pub const MAX_WAIT: Duration = Duration::from_secs(30);
@@ -44,7 +45,9 @@ pub struct Display {
     server: Child,
     manager: Child,
     name: String,
-    folder: TempDir,
+    folder: Folder,
+    /// Folder of the program and its settings.
+    pub home: Folder,
     _lock: MutexGuard<'static, ()>,
 }
 
@@ -74,20 +77,10 @@ impl Display {
         }
         // A failed test has released the display too.
         let lock = DISPLAY_LOCK.lock().unwrap_or_else(PoisonError::into_inner);
-        let folder = tempfile::tempdir().unwrap();
+        let folder = Folder::new();
         let mut server = quiet("Xvfb")
-            .args([
-                "-displayfd",
-                "1",
-                "-screen",
-                "0",
-                "1400x900x24",
-                "-noreset",
-                "-nolisten",
-                "tcp",
-                "-fbdir",
-            ])
-            .arg(folder.path())
+            .args("-displayfd 1 -screen 0 1400x900x24 -noreset -nolisten tcp -fbdir".split(' '))
+            .arg(&*folder)
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
@@ -102,6 +95,7 @@ impl Display {
             manager,
             name,
             folder,
+            home: Folder::new(),
             _lock: lock,
         };
         // A window that opens before the manager runs gets no focus.
@@ -117,6 +111,13 @@ impl Display {
         Some(display)
     }
 
+    /// Opens the program in its window, in at most three tries.
+    pub fn open_app(&self, words: &str) -> App<'_> {
+        (0..3)
+            .find_map(|_| App::try_open(self, words))
+            .expect("no window in three tries")
+    }
+
     pub fn command(&self, program: &str) -> Command {
         let mut command = quiet(program);
         command
@@ -125,10 +126,10 @@ impl Display {
         command
     }
 
-    pub fn xdotool(&self, words: &[&str]) -> String {
+    pub fn xdotool(&self, words: impl Words) -> String {
         let output = self
             .command("xdotool")
-            .args(words)
+            .args(words.list())
             .stdout(Stdio::piped())
             .output()
             .unwrap();
@@ -137,7 +138,7 @@ impl Display {
 
     /// Returns the present contents of the screen.
     pub fn screen(&self) -> Screen {
-        let file = self.folder.path().join("Xvfb_screen0");
+        let file = self.folder.join("Xvfb_screen0");
         Screen::of(&fs::read(file).unwrap())
     }
 }

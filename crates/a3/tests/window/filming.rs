@@ -7,7 +7,6 @@ use std::path::Path;
 use image::AnimationDecoder;
 use image::codecs::gif::GifDecoder;
 
-use crate::app::App;
 use crate::display::{Display, until};
 
 /// Returns the frames of a GIF.
@@ -40,16 +39,13 @@ fn filming() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let words = ["v", "0.005", "--scene", "chain"];
-    let app = App::open(&display, folder.path(), &words);
+    let words = "v 0.005 --scene chain";
+    let app = display.open_app(words);
     let later = |by: f64| {
         let time = app.number("time").unwrap();
-        until("some time", || {
-            (app.number("time")? > time + by).then_some(())
-        });
+        app.wait("time", |t| t > time + by);
     };
-    let file = |name: &str| folder.path().join(name);
+    let file = |name: &str| display.home.join(name);
     later(1.5);
     // The last seconds, while the run continues.
     app.press_for("n", "film", "true");

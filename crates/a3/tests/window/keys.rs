@@ -32,8 +32,7 @@ fn keys() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let app = App::open(&display, folder.path(), &["t", "0.01"]);
+    let app = display.open_app("t 0.01");
     for (key, value) in [
         ("scene", "cloth"),
         ("solver", "trapezoid"),
@@ -73,7 +72,7 @@ fn keys() {
     app.press_for("2", "solver", "trapezoid");
 
     app.press("p");
-    let picture = folder.path().join("a3-cloth-1.png");
+    let picture = display.home.join("a3-cloth-1.png");
     until("a picture", || picture.exists().then_some(()));
     let picture = image::open(&picture).unwrap();
     assert_eq!((picture.width(), picture.height()), (1280, 720));
@@ -81,11 +80,9 @@ fn keys() {
     for scene in SCENES {
         app.press_for("t", "scene", scene);
     }
-    until("some time", || (app.number("time")? > 1.0).then_some(()));
+    app.wait("time", |time| time > 1.0);
     app.press("r");
-    until("the beginning", || {
-        (app.number("time")? < 0.9).then_some(())
-    });
+    app.wait("time", |time| time < 0.9);
     app.quit();
 }
 
@@ -118,8 +115,7 @@ fn pausing_the_camera_and_help() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let app = App::open(&display, folder.path(), &["t", "0.01"]);
+    let app = display.open_app("t 0.01");
 
     // A paused run stands still, takes no computing time, and takes single steps.
     app.press_for("space", "paused", "true");
@@ -133,9 +129,7 @@ fn pausing_the_camera_and_help() {
     );
     assert_eq!(app.number("steps").unwrap(), steps);
     app.press("period");
-    until("a step", || {
-        (app.number("steps")? == steps + 1.0).then_some(())
-    });
+    app.wait("steps", |found| found == steps + 1.0);
 
     // The surface is red, the wires are not; the button that films is, a little.
     assert!(
@@ -179,27 +173,8 @@ fn pausing_the_camera_and_help() {
     escape_closes_and_asks(&app);
 
     // Wheel and drag move the camera, and c resets it.
-    display.xdotool(&[
-        "mousemove",
-        "--window",
-        &app.window,
-        "1150",
-        "600",
-        "click",
-        "4",
-        "click",
-        "4",
-    ]);
-    display.xdotool(&[
-        "mousedown",
-        "1",
-        "mousemove_relative",
-        "--",
-        "-200",
-        "20",
-        "mouseup",
-        "1",
-    ]);
+    app.point_and(1150, 600, "click 4 click 4");
+    display.xdotool("mousedown 1 mousemove_relative -- -200 20 mouseup 1");
     until("another view", || {
         (display.screen().difference(&before) > 1.0).then_some(())
     });
@@ -209,9 +184,7 @@ fn pausing_the_camera_and_help() {
     });
 
     app.press_for("space", "paused", "false");
-    until("more steps", || {
-        (app.number("steps")? > steps + 5.0).then_some(())
-    });
+    app.wait("steps", |found| found > steps + 5.0);
     app.quit();
 }
 
@@ -221,8 +194,7 @@ fn blowing_up() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let app = App::open(&display, folder.path(), &["e", "0.05", "--scene", "mit"]);
+    let app = display.open_app("e 0.05 --scene mit");
     app.expect("blown", "true");
     let steps = app.number("steps").unwrap();
     sleep(Duration::from_millis(500));
@@ -237,9 +209,7 @@ fn blowing_up() {
     for _ in 0..40 {
         app.press("minus");
     }
-    until("a small step", || {
-        (app.number("step")? < 0.0003).then_some(())
-    });
+    app.wait("step", |step| step < 0.0003);
     app.press_for("r", "blown", "false");
     app.expect_frames();
     app.quit();

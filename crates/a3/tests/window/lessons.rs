@@ -1,6 +1,5 @@
 //! Lessons in the window (key F1): a step begins its run, and another one replaces it.
 
-use crate::app::App;
 use crate::display::Display;
 
 #[test]
@@ -8,8 +7,7 @@ fn a_key_opens_the_lessons_and_keys_go_through_them() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let app = App::open(&display, folder.path(), &["r", "0.01", "--scene", "chain"]);
+    let app = display.open_app("r 0.01 --scene chain");
     app.press("F1");
     app.expect("lesson", "list");
     app.press("Return");

@@ -10,6 +10,8 @@
 mod app;
 mod bar;
 mod choosing;
+#[path = "../common/mod.rs"]
+mod common;
 mod comparing;
 mod display;
 mod editing;

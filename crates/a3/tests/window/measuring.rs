@@ -1,6 +1,5 @@
 //! Measuring the scene in its window, and running what was measured beside the present run.
 
-use crate::app::App;
 use crate::display::{Display, until};
 
 /// Whether a pixel has the colour of the classical Runge-Kutta method on charts.
@@ -16,24 +15,23 @@ fn charting() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let app = App::open(&display, folder.path(), &["t", "0.01", "--scene", "simple"]);
+    let app = display.open_app("t 0.01 --scene simple");
     app.press_for("q", "measure", "true");
     assert_eq!(app.get("known"), "false");
     app.press_for("Return", "known", "true");
     app.press_for("space", "paused", "true");
     let click = |x: i32, y: i32| {
         let (x, y) = (x.to_string(), y.to_string());
-        display.xdotool(&["mousemove", "--window", &app.window, &x, &y]);
+        app.point(x, y);
         app.still_screen();
-        display.xdotool(&["click", "1"]);
+        display.xdotool("click 1");
     };
     // The first point of the curve from above is on the right half of the screen, below the legend.
     let found = app.still_screen().block(800..1380, 350..880, 4, is_rk4);
     let (x, y) = found.expect("a point of the curve");
-    display.xdotool(&["mousemove", &x.to_string(), &y.to_string()]);
+    display.xdotool(format!("mousemove {x} {y}"));
     app.still_screen();
-    display.xdotool(&["click", "1"]);
+    display.xdotool("click 1");
     app.expect("panes", "2");
     assert_eq!(app.get("solvers"), "trapezoid,rk4");
     assert_ne!(app.get("step_sizes"), "0.01,0.01");
@@ -50,7 +48,7 @@ fn charting() {
     assert_eq!(app.get("solvers"), "trapezoid");
     click(670, 21);
     app.expect("list", "true");
-    display.xdotool(&["type", "midp"]);
+    display.xdotool("type midp");
     app.press_for("Return", "panes", "2");
     assert_eq!(app.get("solvers"), "trapezoid,midpoint");
     app.press_for("Escape", "measure", "false");

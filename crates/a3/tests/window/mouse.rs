@@ -3,7 +3,6 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::app::App;
 use crate::display::{Display, until};
 use crate::screen::{is_amber, is_red};
 
@@ -12,30 +11,21 @@ fn pulling() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let app = App::open(&display, folder.path(), &["t", "0.01"]);
-    until("the cloth to hang", || {
-        (app.number("time")? > 2.0).then_some(())
-    });
+    let app = display.open_app("t 0.01");
+    app.wait("time", |time| time > 2.0);
     // Convert to positions in the window.
     let (x, y) = display.screen().middle(is_red);
     let (left, top) = app.corner();
     let (x, y) = (x - left, y - top);
     let go = |x: i32, y: i32| {
-        display.xdotool(&[
-            "mousemove",
-            "--window",
-            &app.window,
-            &x.to_string(),
-            &y.to_string(),
-        ]);
+        app.point(x, y);
     };
     // The shape of the pointer tells the effect of a press.
     go(30, 600);
     app.expect("cursor", "Default");
     go(x, y);
     app.expect("cursor", "Grab");
-    display.xdotool(&["mousedown", "1"]);
+    display.xdotool("mousedown 1");
     until("a grip", || (app.get("grabbed") != "-").then_some(()));
     app.expect("cursor", "Grabbing");
     let particle = app.get("grabbed");
@@ -67,22 +57,14 @@ fn pulling() {
         assert_eq!(app.get("grabbed"), particle);
         app.expect_frames();
     }
-    display.xdotool(&["mouseup", "1"]);
+    display.xdotool("mouseup 1");
     app.expect("grabbed", "-");
     app.expect("blown", "false");
     // Beside the cloth, there is nothing to grab.
-    display.xdotool(&[
-        "mousemove",
-        "--window",
-        &app.window,
-        "1200",
-        "650",
-        "mousedown",
-        "1",
-    ]);
+    app.point_and(1200, 650, "mousedown 1");
     app.expect_frames();
     assert_eq!(app.get("grabbed"), "-");
-    display.xdotool(&["mouseup", "1"]);
+    display.xdotool("mouseup 1");
     go(x, y);
     app.expect("cursor", "Grab");
     app.press_for("i", "parallel", "true");
@@ -104,9 +86,8 @@ fn clicks_slow_motion_and_going_back() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let app = App::open(&display, folder.path(), &["t", "0.01"]);
-    until("some time", || (app.number("time")? > 1.5).then_some(()));
+    let app = display.open_app("t 0.01");
+    app.wait("time", |time| time > 1.5);
     app.press_for("bracketleft", "slowness", "1");
     app.press_for("bracketleft", "slowness", "2");
     let (time, begun) = (app.number("time").unwrap(), Instant::now());
@@ -118,65 +99,45 @@ fn clicks_slow_motion_and_going_back() {
     let now = app.number("time").unwrap();
     app.press_for("comma", "scrubbed", "true");
     app.press("less");
-    until("a time before", || {
-        (app.number("time")? < now - 0.15).then_some(())
-    });
+    app.wait("time", |time| time < now - 0.15);
     app.press("period");
     app.press_for("greater", "scrubbed", "false");
-    until("the same time", || {
-        (app.number("time")? == now).then_some(())
-    });
+    app.wait("time", |time| time == now);
     // Drag along the timeline.
     app.press_for("comma", "scrubbed", "true");
-    let go = |x: &str| display.xdotool(&["mousemove", "--window", &app.window, x, "707"]);
+    let go = |x: &str| app.point(x, 707);
     go("740");
-    display.xdotool(&["mousedown", "1"]);
+    display.xdotool("mousedown 1");
     go("190");
-    until("long before", || {
-        (app.number("time")? < 0.4 * now).then_some(())
-    });
+    app.wait("time", |time| time < 0.4 * now);
     go("1200");
     app.expect("scrubbed", "false");
-    display.xdotool(&["mouseup", "1"]);
-    until("the same time", || {
-        (app.number("time")? == now).then_some(())
-    });
+    display.xdotool("mouseup 1");
+    app.wait("time", |time| time == now);
 
     let (x, y) = app.still_screen().middle(is_red);
     let (left, top) = app.corner();
-    let place = [(x - left).to_string(), (y - top).to_string()];
-    let click = |words: &[&str]| {
-        let there = ["mousemove", "--window", &app.window, &place[0], &place[1]];
-        display.xdotool(&[&there[..], words].concat());
-    };
+    let click = |words: &str| app.point_and(x - left, y - top, words);
     assert_eq!(app.get("pins"), "20");
-    click(&["click", "3"]);
+    click("click 3");
     app.expect("pins", "21");
-    click(&["click", "3"]);
+    click("click 3");
     app.expect("pins", "20");
-    click(&["click", "--repeat", "2", "--delay", "60", "1"]);
+    click("click --repeat 2 --delay 60 1");
     until("springs", || (app.get("springs_of") != "-").then_some(()));
     // Two clicks far apart are no double click.
-    let beside = |x: &'static str| ["mousemove", "--window", &app.window, x, "600", "click", "1"];
-    display.xdotool(&[beside("1100"), beside("1200")].concat());
+    let second = format!("click 1 mousemove --window {} 1200 600 click 1", app.window);
+    app.point_and(1100, 600, &second);
     // A paused run draws frames only after a change.
     let before = app.still_screen();
     assert_ne!(app.get("springs_of"), "-");
-    click(&[
-        "mousedown",
-        "3",
-        "mousemove_relative",
-        "60",
-        "20",
-        "mouseup",
-        "3",
-    ]);
+    click("mousedown 3 mousemove_relative 60 20 mouseup 3");
     until("another view", || {
         (display.screen().difference(&before) > 0.5).then_some(())
     });
     assert_eq!(app.get("pins"), "20");
-    display.xdotool(&["mousemove", "--window", &app.window, "1200", "650"]);
-    display.xdotool(&["click", "--repeat", "2", "--delay", "60", "1"]);
+    app.point(1200, 650);
+    display.xdotool("click --repeat 2 --delay 60 1");
     app.expect("springs_of", "-");
     app.quit();
 }
@@ -188,21 +149,20 @@ fn boxes_and_undoing() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let app = App::open(&display, folder.path(), &["t", "0.01", "--paused"]);
-    let drag = |button: &str, [x, y]: [&str; 2], [to_x, to_y]: [&str; 2]| {
-        display.xdotool(&["mousemove", "--window", &app.window, x, y]);
-        display.xdotool(&["keydown", "shift"]);
+    let app = display.open_app("t 0.01 --paused");
+    let drag = |button: &str, [x, y]: [i32; 2], [to_x, to_y]: [i32; 2]| {
+        app.point(x, y);
+        display.xdotool("keydown shift");
         app.expect("cursor", "Crosshair");
-        display.xdotool(&["mousedown", button]);
-        display.xdotool(&["mousemove", "--window", &app.window, "500", "300"]);
-        display.xdotool(&["mousemove", "--window", &app.window, to_x, to_y]);
-        display.xdotool(&["mouseup", button, "keyup", "shift"]);
+        display.xdotool(["mousedown", button]);
+        app.point(500, 300);
+        app.point(to_x, to_y);
+        display.xdotool(["mouseup", button, "keyup", "shift"]);
     };
     app.expect("pins", "20");
-    drag("1", ["300", "20"], ["1000", "670"]);
+    drag("1", [300, 20], [1000, 670]);
     app.expect("pins", "400");
-    drag("3", ["300", "20"], ["1000", "670"]);
+    drag("3", [300, 20], [1000, 670]);
     app.expect("pins", "0");
     app.press_for("z", "pins", "400");
     app.press_for("z", "pins", "20");
@@ -211,21 +171,17 @@ fn boxes_and_undoing() {
     app.press_for("Delete", "pins", "0");
     app.press_for("z", "pins", "20");
     // A box around nothing changes nothing.
-    drag("1", ["20", "500"], ["60", "600"]);
+    drag("1", [20, 500], [60, 600]);
     app.still_screen();
     app.expect("pins", "20");
     // A drag of a slider is one change.
     app.press_for("Tab", "panel", "true");
-    let slide = |words: &[&str]| {
-        display.xdotool(&[&["mousemove", "--window", &app.window], words].concat());
+    for (x, words) in [(1120, ""), (1120, "mousedown 1"), (1090, ""), (900, "")] {
+        app.point_and(x, 70, words);
         app.still_screen();
-    };
-    slide(&["1120", "70"]);
-    slide(&["1120", "70", "mousedown", "1"]);
-    slide(&["1090", "70"]);
-    slide(&["900", "70"]);
+    }
     app.expect("step", "0.00001");
-    display.xdotool(&["mouseup", "1"]);
+    display.xdotool("mouseup 1");
     app.press_for("z", "step", "0.01");
     app.quit();
 }

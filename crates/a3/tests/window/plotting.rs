@@ -1,6 +1,5 @@
 //! Plots of what is picked, and their files.
 
-use crate::app::App;
 use crate::display::{Display, until};
 use crate::screen::is_red;
 
@@ -17,17 +16,15 @@ fn plotting() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let words = ["r", "0.005", "--scene", "pendulum"];
-    let app = App::open(&display, folder.path(), &words);
+    let app = display.open_app("r 0.005 --scene pendulum");
     app.press_for("F3", "plots", "1");
-    until("some time", || (app.number("time")? > 2.0).then_some(()));
+    app.wait("time", |time| time > 2.0);
     app.press_for("space", "paused", "true");
     let curve = app.still_screen().count(is_blue);
     assert!(curve > 300, "{curve} pixels of curves");
     app.press("u");
-    let table = folder.path().join("a3-pendulum-1.csv");
-    let picture = folder.path().join("a3-pendulum-1.png");
+    let table = display.home.join("a3-pendulum-1.csv");
+    let picture = display.home.join("a3-pendulum-1.png");
     until("files of the plots", || picture.exists().then_some(()));
     let table = std::fs::read_to_string(table).unwrap();
     let heading = "scene,solver,step or tolerance,of,time (s),x (m),y (m)";
@@ -41,19 +38,8 @@ fn plotting() {
         .still_screen()
         .block(60..800, 300..800, 6, is_red)
         .unwrap();
-    let (x, y) = (x.to_string(), y.to_string());
     for plots in ["0", "1"] {
-        display.xdotool(&[
-            "mousemove",
-            &x,
-            &y,
-            "click",
-            "--repeat",
-            "2",
-            "--delay",
-            "60",
-            "1",
-        ]);
+        display.xdotool(format!("mousemove {x} {y} click --repeat 2 --delay 60 1"));
         app.expect("plots", plots);
         // The next press is no third click.
         std::thread::sleep(std::time::Duration::from_millis(500));

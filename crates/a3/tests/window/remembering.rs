@@ -2,7 +2,6 @@
 
 use std::fs;
 
-use crate::app::App;
 use crate::display::Display;
 
 #[test]
@@ -10,16 +9,11 @@ fn settings_come_back_unless_they_are_not_wanted() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let own = folder.path().join("own.toml");
+    let own = display.home.join("own.toml");
     let chain =
         "[[chain]]\nparticles = 3\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nmass = 1\nstiffness = 25\n";
     fs::write(&own, chain).unwrap();
-    let app = App::open(
-        &display,
-        folder.path(),
-        &["t", "0.01", "--scene", "own.toml", "--dark"],
-    );
+    let app = display.open_app("t 0.01 --scene own.toml --dark");
     app.expect("dark", "true");
     app.press_for("Tab", "panel", "true");
     app.press_for("ctrl+plus", "scale", "1.15");
@@ -28,10 +22,10 @@ fn settings_come_back_unless_they_are_not_wanted() {
     // With Ctrl, plus and minus do not change the step.
     app.expect("step", "0.01");
     app.quit();
-    let file = folder.path().join("a3").join("settings.toml");
+    let file = display.home.join("a3").join("settings.toml");
     let text = fs::read_to_string(&file).unwrap();
     assert!(text.contains("own.toml"), "{text}");
-    let app = App::open(&display, folder.path(), &["--scene", "chain"]);
+    let app = display.open_app("--scene chain");
     app.expect("panel", "true");
     app.expect("scale", "1.15");
     // The dark theme of the command line was for that window.
@@ -49,12 +43,12 @@ fn settings_come_back_unless_they_are_not_wanted() {
     }
     app.press_for("Return", "scene", "own");
     app.quit();
-    for (words, dark) in [(&["--light"][..], "false"), (&[], "true")] {
-        let app = App::open(&display, folder.path(), words);
+    for (words, dark) in [("--light", "false"), ("", "true")] {
+        let app = display.open_app(words);
         app.expect("dark", dark);
         app.quit();
     }
-    let app = App::open(&display, folder.path(), &["--no-config"]);
+    let app = display.open_app("--no-config");
     app.expect("panel", "false");
     app.expect("dark", "false");
     app.press_for("Tab", "panel", "true");
@@ -62,7 +56,7 @@ fn settings_come_back_unless_they_are_not_wanted() {
     app.quit();
     // An invalid settings file is reported and not overwritten.
     fs::write(&file, "colour = 'red'\n").unwrap();
-    let app = App::open(&display, folder.path(), &[]);
+    let app = display.open_app("");
     app.expect("panel", "false");
     app.press_for("Tab", "panel", "true");
     app.quit();

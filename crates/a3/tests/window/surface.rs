@@ -3,7 +3,6 @@
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::app::App;
 use crate::display::Display;
 use crate::screen::is_red;
 
@@ -12,31 +11,20 @@ fn sizes_minimising_a_lost_device_and_closing() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let app = App::open(&display, folder.path(), &["r", "0.01", "--wind"]);
-    for (width, height) in [
-        ("90", "70"),
-        ("4000", "3000"),
-        ("333", "777"),
-        ("1280", "720"),
-    ] {
-        display.xdotool(&["windowsize", &app.window, width, height]);
+    let app = display.open_app("r 0.01 --wind");
+    for [width, height] in [[90, 70], [4000, 3000], [333, 777], [1280, 720]] {
+        app.resize([width, height]);
         app.expect("size", &format!("{width}x{height}"));
         app.expect_frames();
     }
     // Many sizes in quick succession.
     for k in 0..40 {
-        display.xdotool(&[
-            "windowsize",
-            &app.window,
-            &(300 + 17 * k).to_string(),
-            &(700 - 11 * k).to_string(),
-        ]);
+        app.resize([300 + 17 * k, 700 - 11 * k]);
     }
-    display.xdotool(&["windowsize", &app.window, "1280", "720"]);
+    app.resize([1280, 720]);
     app.expect("size", "1280x720");
 
-    display.xdotool(&["windowminimize", &app.window]);
+    display.xdotool(["windowminimize", &app.window]);
     app.expect("visible", "false");
     let (time, frames) = (app.number("time").unwrap(), app.number("frames").unwrap());
     sleep(Duration::from_secs(2));
@@ -44,7 +32,7 @@ fn sizes_minimising_a_lost_device_and_closing() {
         app.number("frames").unwrap() <= frames + 1.0,
         "drawn while minimised"
     );
-    display.xdotool(&["windowmap", &app.window, "windowactivate", &app.window]);
+    display.xdotool(["windowmap", &app.window, "windowactivate", &app.window]);
     app.expect("visible", "true");
     app.expect_frames();
     assert!(
@@ -75,16 +63,15 @@ fn a_picture_is_drawn_without_a_word_on_sockets() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
     let output = display
         .command(env!("CARGO_BIN_EXE_a3"))
         .args(["render", "--until", "0.1", "--output", "x.png"])
-        .current_dir(folder.path())
+        .current_dir(&display.home)
         .env_remove("XDG_RUNTIME_DIR")
         .stderr(std::process::Stdio::piped())
         .output()
         .unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(said.is_empty() && output.status.success(), "{said}");
-    assert!(folder.path().join("x.png").exists());
+    assert!(display.home.join("x.png").exists());
 }

@@ -4,7 +4,6 @@ use std::fs;
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::app::App;
 use crate::display::Display;
 
 /// A changed scene file is reloaded, also while the run is paused. A file with an error leaves the
@@ -14,19 +13,14 @@ fn watching() {
     let Some(display) = Display::open() else {
         return;
     };
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("mine.toml");
+    let file = display.home.join("mine.toml");
     let save = |step: &str, pins: &str| {
         let cloth = "[[cloth]]\ngrid = [5, 5]\nwidth = 1\nmass = 0.1\nstiffness = [20, 10, 5]\n";
         let pin = format!("pin = [{{ at = [{pins}] }}]\n");
         fs::write(&file, format!("solver = 'r'\nstep = {step}\n{cloth}{pin}")).unwrap();
     };
     save("0.01", "'top'");
-    let app = App::open(
-        &display,
-        folder.path(),
-        &["--scene", "mine.toml", "--watch"],
-    );
+    let app = display.open_app("--scene mine.toml --watch");
     app.expect("pins", "5");
     app.expect_frames();
     save("0.005", "'top-left', 'top-right'");

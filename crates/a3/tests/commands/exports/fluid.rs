@@ -1,24 +1,22 @@
 //! Fluids in files: their particles, and a surface that is another mesh in each frame.
 
-use std::fs;
 use std::path::Path;
 
-use crate::common::{a3, text};
+use crate::common::{Folder, succeed};
 
 /// Writes two frames of the dam break. Of its 962 particles, 512 are not in the walls.
 fn write(folder: &Path, output: &str) {
     let words =
         format!("simulate r 0.002 --scene dam-break --until 0.04 --fps 25 --output {output}");
-    let output = a3(folder, &words.split(' ').collect::<Vec<_>>());
-    assert!(output.status.success(), "{}", text(&output.stderr));
+    succeed(folder, words);
 }
 
 #[test]
 fn an_obj_has_the_surface_of_a_fluid_after_its_particles() {
-    let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), "f-#.obj");
+    let folder = &Folder::new();
+    write(folder, "f-#.obj");
     for k in 1..=2 {
-        let obj = fs::read_to_string(folder.path().join(format!("f-{k}.obj"))).unwrap();
+        let obj = folder.read(&format!("f-{k}.obj"));
         let (particles, liquid) = obj.split_once("o liquid\n").unwrap();
         let count = |text: &str, keyword: &str| {
             let has = |line: &&str| line.starts_with(&format!("{keyword} "));
@@ -47,9 +45,9 @@ fn an_obj_has_the_surface_of_a_fluid_after_its_particles() {
 
 #[test]
 fn a_glb_shows_the_surface_of_each_frame_in_its_turn() {
-    let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), "f.glb");
-    let read = gltf::Gltf::from_slice(&fs::read(folder.path().join("f.glb")).unwrap()).unwrap();
+    let folder = &Folder::new();
+    write(folder, "f.glb");
+    let read = gltf::Gltf::from_slice(&folder.bytes("f.glb")).unwrap();
     let blob = read.blob.as_deref().unwrap();
     let data = |_: gltf::Buffer<'_>| Some(blob);
     let nodes: Vec<_> = read.default_scene().unwrap().nodes().collect();

@@ -1,16 +1,15 @@
 //! Animations as glTF.
 
-use std::fs;
 use std::process::Command;
 
 use super::{COUNT, RATE, distance, normals, run, triangles, write};
-use crate::common::{a3, asked, is_missing, skip, text};
+use crate::common::{Folder, asked, is_missing, skip, succeed, text};
 
 #[test]
 fn glb_goes_from_frame_to_frame() {
-    let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), "cloth", "x.glb", &["--fps", "25"]);
-    let read = gltf::Gltf::from_slice(&fs::read(folder.path().join("x.glb")).unwrap()).unwrap();
+    let folder = &Folder::new();
+    write(folder, "cloth", "x.glb --fps 25");
+    let read = gltf::Gltf::from_slice(&folder.bytes("x.glb")).unwrap();
     let blob = read.blob.as_deref().unwrap();
     let data = |_: gltf::Buffer<'_>| Some(blob);
     let node = read.default_scene().unwrap().nodes().next().unwrap();
@@ -85,13 +84,13 @@ fn glb_goes_from_frame_to_frame() {
 #[test]
 fn glb_without_a_surface_is_lines_and_points() {
     use gltf::mesh::Mode;
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for (scene, modes) in [
         ("chain", &[(Mode::Lines, 6), (Mode::Points, 4)][..]),
         ("simple", &[(Mode::Points, 1)]),
     ] {
-        write(folder.path(), scene, "x.glb", &[]);
-        let read = gltf::Gltf::from_slice(&fs::read(folder.path().join("x.glb")).unwrap()).unwrap();
+        write(folder, scene, "x.glb");
+        let read = gltf::Gltf::from_slice(&folder.bytes("x.glb")).unwrap();
         let mesh = read.meshes().next().unwrap();
         let found: Vec<_> = mesh
             .primitives()
@@ -107,14 +106,14 @@ fn glb_without_a_surface_is_lines_and_points() {
 
 #[test]
 fn assimp_reads_surfaces_and_animations() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     if is_missing("assimp") {
         return;
     }
-    write(folder.path(), "cloth", "x.glb", &[]);
-    write(folder.path(), "cloth", "x.obj", &[]);
+    write(folder, "cloth", "x.glb");
+    write(folder, "cloth", "x.obj");
     for (file, animations) in [("x.glb", "1"), ("x.obj", "0")] {
-        let says = asked(folder.path(), "assimp", &["info", file]);
+        let says = asked(folder, "assimp", ["info", file]);
         for (what, right) in [
             ("Vertices:", "400"),
             ("Faces:", "722"),
@@ -136,19 +135,17 @@ fn khronos_finds_nothing_to_complain_of() {
     let Some(modules) = std::env::var_os("A3_GLTF_VALIDATOR") else {
         return skip("A3_GLTF_VALIDATOR is not set", "A3_REQUIRE_GLTF_VALIDATOR");
     };
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let script = "require('gltf-validator').validateBytes(new Uint8Array(require('fs').readFileSync('x.glb')))
         .then(r => console.log(r.issues.numErrors, r.issues.numWarnings, r.issues.numInfos, r.issues.numHints))";
     for scene in ["cloth", "chain", "simple"] {
         for until in ["0", "0.2"] {
-            let words = [
-                "simulate", "r", "0.01", "--scene", scene, "--until", until, "--output", "x.glb",
-            ];
-            assert!(a3(folder.path(), &words).status.success());
+            let run = format!("simulate r 0.01 --scene {scene} --until {until} --output x.glb");
+            succeed(folder, run);
             let output = Command::new("node")
                 .args(["-e", script])
                 .env("NODE_PATH", &modules)
-                .current_dir(folder.path())
+                .current_dir(folder)
                 .output()
                 .unwrap();
             assert_eq!(

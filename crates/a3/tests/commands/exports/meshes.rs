@@ -1,18 +1,16 @@
 //! Meshes as OBJ and PC2.
 
-use std::fs;
-
 use super::{COUNT, ELLIPSE, distance, normals, positions, run, triangles, write};
-use crate::common::{TEARING, a3, text};
+use crate::common::{Folder, TEARING, succeed, text};
 use serde_json::Value;
 
 #[test]
 fn obj_sequences_have_surfaces_with_smooth_normals() {
-    let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), "cloth", "f-##.obj", &["--fps", "25"]);
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), COUNT);
+    let folder = &Folder::new();
+    write(folder, "cloth", "f-##.obj --fps 25");
+    assert_eq!(folder.count(), COUNT);
     run("cloth", |k, simulation| {
-        let file = folder.path().join(format!("f-{:02}.obj", k + 1));
+        let file = folder.join(format!("f-{:02}.obj", k + 1));
         let (models, _) = tobj::load_obj(file, &tobj::LoadOptions::default()).unwrap();
         let [model] = &models[..] else {
             panic!("one object")
@@ -36,8 +34,8 @@ fn obj_sequences_have_surfaces_with_smooth_normals() {
         }
     });
     // Without #, the state at the end.
-    write(folder.path(), "cloth", "last.obj", &[]);
-    let last = fs::read_to_string(folder.path().join("last.obj")).unwrap();
+    write(folder, "cloth", "last.obj");
+    let last = folder.read("last.obj");
     assert!(last.contains("t = 0.21 s"));
 }
 
@@ -45,23 +43,15 @@ fn obj_sequences_have_surfaces_with_smooth_normals() {
 /// their faces do.
 #[test]
 fn what_is_torn_is_no_face() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("tearing.toml"), TEARING).unwrap();
-    let write = |output: &str, more: &[&str]| {
-        let words = ["simulate", "--scene", "tearing.toml", "--until", "0.8"];
-        let output = a3(
-            folder.path(),
-            &[&words[..], &["--output", output], more].concat(),
-        );
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        text(&output.stderr).to_owned()
+    let folder = &Folder::new();
+    folder.write("tearing.toml", TEARING);
+    let write = |output: &str| {
+        let words = format!("simulate --scene tearing.toml --until 0.8 --fps 10 --output {output}");
+        text(&succeed(folder, words).stderr).to_owned()
     };
-    assert_eq!(
-        write("f-#.obj", &["--fps", "10", "--summary", "s.json"]),
-        ""
-    );
+    assert_eq!(write("f-#.obj --summary s.json"), "");
     let faces = |k: usize| {
-        let file = folder.path().join(format!("f-{k}.obj"));
+        let file = folder.join(format!("f-{k}.obj"));
         let (models, _) = tobj::load_obj(file, &tobj::LoadOptions::default()).unwrap();
         let mesh = &models[0].mesh;
         let corner = |i: u32| {
@@ -82,12 +72,12 @@ fn what_is_torn_is_no_face() {
     assert!((20..50).contains(&left), "{left} faces are left");
     // Diagonals are springs, or lie across a square of four.
     assert!(longest < 1.4 * 2.0 * 0.2, "{longest} m");
-    let summary = fs::read(folder.path().join("s.json")).unwrap();
+    let summary = folder.bytes("s.json");
     let summary: Value = serde_json::from_slice(&summary).unwrap();
     let torn = summary["torn"].as_u64().unwrap();
     assert!(torn > 5, "{torn}");
     for name in ["f.pc2", "f.glb", "f.usda"] {
-        let said = write(name, &["--fps", "10"]);
+        let said = write(name);
         let right = format!("{torn} springs broke, but {name} has one mesh for all its frames");
         assert!(said.starts_with(&right), "{said}");
     }
@@ -102,11 +92,11 @@ fn lines<'a>(obj: &'a str, keyword: &'a str) -> impl Iterator<Item = Vec<&'a str
 
 #[test]
 fn what_has_no_surface_is_points_and_lines() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for (scene, points, springs) in [("chain", 4, 3), ("pendulum", 2, 1), ("simple", 1, 0)] {
-        write(folder.path(), scene, "f-#.obj", &["--fps", "25"]);
+        write(folder, scene, "f-#.obj --fps 25");
         run(scene, |k, simulation| {
-            let obj = fs::read_to_string(folder.path().join(format!("f-{}.obj", k + 1))).unwrap();
+            let obj = folder.read(&format!("f-{}.obj", k + 1));
             let vertices: Vec<[f32; 3]> = lines(&obj, "v")
                 .map(|words| [1, 2, 3].map(|k| words[k].parse().unwrap()))
                 .collect();
@@ -129,11 +119,11 @@ fn what_has_no_surface_is_points_and_lines() {
 /// samples, then the points.
 #[test]
 fn pc2_has_the_positions_of_all_frames() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for scene in ["cloth", "chain"] {
-        let said = write(folder.path(), scene, "x.pc2", &["--fps", "25"]);
+        let said = write(folder, scene, "x.pc2 --fps 25");
         assert!(said.contains("x.obj"), "{said}");
-        let bytes = fs::read(folder.path().join("x.pc2")).unwrap();
+        let bytes = folder.bytes("x.pc2");
         let word = |k: usize| <[u8; 4]>::try_from(&bytes[12 + 4 * k..16 + 4 * k]).unwrap();
         let n = u32::from_le_bytes(word(1)) as usize;
         assert_eq!(&bytes[..12], b"POINTCACHE2\0");
@@ -145,7 +135,7 @@ fn pc2_has_the_positions_of_all_frames() {
             [0, 1, 2].map(|c| f32::from_le_bytes(word(5 + 3 * (k * n + i) + c)))
         };
         // The mesh it belongs to has its points in the same order.
-        let obj = fs::read_to_string(folder.path().join("x.obj")).unwrap();
+        let obj = folder.read("x.obj");
         let vertices: Vec<_> = lines(&obj, "v").collect();
         assert_eq!(vertices.len(), n);
         run(scene, |k, simulation| {
@@ -180,21 +170,16 @@ fn kept(obj: &str) -> Vec<[f32; 3]> {
 /// In every built-in scene, a point cache has the points that the mesh beside it has in Blender.
 #[test]
 fn pc2_moves_the_mesh_that_programs_read() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     let mut fewer = 0;
     for entry in a3_scenes::SCENES {
-        let words = [
-            "simulate", "--scene", entry.name, "--until", "0.01", "--output", "x.pc2",
-        ];
-        let output = a3(folder.path(), &words);
-        assert!(
-            output.status.success(),
-            "{}: {}",
-            entry.name,
-            text(&output.stderr)
+        let words = format!(
+            "simulate --scene {} --until 0.01 --output x.pc2",
+            entry.name
         );
-        let obj = fs::read_to_string(folder.path().join("x.obj")).unwrap();
-        let bytes = fs::read(folder.path().join("x.pc2")).unwrap();
+        succeed(folder, words);
+        let obj = folder.read("x.obj");
+        let bytes = folder.bytes("x.pc2");
         let numbers: Vec<_> = bytes[12..]
             .chunks_exact(4)
             .map(|b| b.try_into().unwrap())
@@ -218,26 +203,15 @@ fn pc2_moves_the_mesh_that_programs_read() {
 /// Times have no digits from rounding errors.
 #[test]
 fn times_are_short() {
-    let folder = tempfile::tempdir().unwrap();
-    let run = [
-        "simulate", "r", "0.001", "--scene", "simple", "--until", "0.006",
-    ];
-    for (name, expected) in [
-        ("x.obj", "t = 0.006 s"),
-        ("x.json", "\"time\":0.006,"),
-        ("x.csv", ",0.006,"),
+    let folder = &Folder::new();
+    for (name, fps, expected) in [
+        ("x.obj", "", "t = 0.006 s"),
+        ("x.json", "", "\"time\":0.006,"),
+        ("x.csv", "--fps 500", ",0.006,"),
     ] {
-        let fps: &[&str] = if name == "x.csv" {
-            &["--fps", "500"]
-        } else {
-            &[]
-        };
-        let output = a3(
-            folder.path(),
-            &[&run[..], &["--output", name], fps].concat(),
-        );
-        assert!(output.status.success(), "{}", text(&output.stderr));
-        let file = fs::read_to_string(folder.path().join(name)).unwrap();
+        let run = "simulate r 0.001 --scene simple --until 0.006";
+        succeed(folder, format!("{run} --output {name} {fps}"));
+        let file = folder.read(name);
         assert!(
             file.contains(expected) && !file.contains("99999999"),
             "{file}"
@@ -248,15 +222,15 @@ fn times_are_short() {
 /// Readers such as meshio expect a normal for each vertex, or none.
 #[test]
 fn normals_are_as_many_as_vertices() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for (scene, has_normals) in [
         ("cloth", true),
         ("chain", false),
         ("boxes", true),
         (ELLIPSE, true),
     ] {
-        write(folder.path(), scene, "x.obj", &[]);
-        let obj = fs::read_to_string(folder.path().join("x.obj")).unwrap();
+        write(folder, scene, "x.obj");
+        let obj = folder.read("x.obj");
         let (vertices, normals) = (lines(&obj, "v").count(), lines(&obj, "vn").count());
         assert_eq!(normals, if has_normals { vertices } else { 0 }, "{scene}");
     }

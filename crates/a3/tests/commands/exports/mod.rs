@@ -13,7 +13,7 @@ mod vtu;
 
 use std::path::Path;
 
-use crate::common::{a3, text};
+use crate::common::{succeed, text};
 use a3_core::{Control, Simulation, integrators};
 
 /// Frames per second that are compared.
@@ -29,16 +29,12 @@ const ELLIPSE: &str = concat!(
 );
 
 /// Returns the arguments of the program.
-fn words<'a>(scene: &'a str, output: &'a str, more: &[&'a str]) -> Vec<&'a str> {
-    let run = [
-        "simulate", "r", "0.007", "--scene", scene, "--until", "0.21", "--output", output,
-    ];
-    [&run[..], more].concat()
+fn words(scene: &str, output: &str) -> String {
+    format!("simulate r 0.007 --scene {scene} --until 0.21 --output {output}")
 }
 
-fn write(folder: &Path, scene: &str, output: &str, more: &[&str]) -> String {
-    let output = a3(folder, &words(scene, output, more));
-    assert!(output.status.success(), "{}", text(&output.stderr));
+fn write(folder: &Path, scene: &str, output: &str) -> String {
+    let output = succeed(folder, words(scene, output));
     assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
     text(&output.stdout).to_owned()
 }

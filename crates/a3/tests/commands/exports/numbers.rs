@@ -1,17 +1,17 @@
 //! Numbers of all frames as JSON, CSV and `.npz`, and the summary of a run.
 
 use std::collections::BTreeMap;
-use std::fs;
 
 use super::{COUNT, RATE, row, run, write};
+use crate::common::Folder;
 use serde_json::Value;
 
 #[test]
 fn json_has_the_states_of_all_frames_to_the_bit() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for scene in ["cloth", "simple", "chain"] {
-        write(folder.path(), scene, "x.json", &["--fps", "25"]);
-        let read = fs::read_to_string(folder.path().join("x.json")).unwrap();
+        write(folder, scene, "x.json --fps 25");
+        let read = folder.read("x.json");
         let frames: Vec<Value> = serde_json::from_str(&read).unwrap();
         assert_eq!(frames.len(), COUNT);
         run(scene, |k, simulation| {
@@ -28,10 +28,10 @@ fn json_has_the_states_of_all_frames_to_the_bit() {
 
 #[test]
 fn csv_has_a_row_a_frame_and_particle_to_the_bit() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for scene in ["cloth", "simple", "pendulum"] {
-        write(folder.path(), scene, "x.csv", &["--fps", "25"]);
-        let mut reader = csv::Reader::from_path(folder.path().join("x.csv")).unwrap();
+        write(folder, scene, "x.csv --fps 25");
+        let mut reader = csv::Reader::from_path(folder.join("x.csv")).unwrap();
         let head = ["frame", "time", "particle", "x", "y", "z", "vx", "vy", "vz"];
         assert_eq!(reader.headers().unwrap(), &head[..]);
         let mut rows = reader.deserialize::<(usize, f64, usize, [f64; 3], [f64; 3])>();
@@ -96,10 +96,10 @@ fn arrays(bytes: &[u8]) -> BTreeMap<String, (String, Vec<f64>)> {
 
 #[test]
 fn npz_has_an_array_of_each_quantity_to_the_bit() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for scene in ["cloth", "simple", "pendulum"] {
-        write(folder.path(), scene, "x.npz", &["--fps", "25"]);
-        let arrays = arrays(&fs::read(folder.path().join("x.npz")).unwrap());
+        write(folder, scene, "x.npz --fps 25");
+        let arrays = arrays(&folder.bytes("x.npz"));
         let (mut times, mut x, mut v, mut n, mut masses) = (vec![], vec![], vec![], 0, None);
         run(scene, |k, simulation| {
             n = simulation.particles();
@@ -127,16 +127,9 @@ fn npz_has_an_array_of_each_quantity_to_the_bit() {
 
 #[test]
 fn a_summary_says_what_became_of_the_energy() {
-    let folder = tempfile::tempdir().unwrap();
-    let read = |name: &str| -> Value {
-        serde_json::from_slice(&fs::read(folder.path().join(name)).unwrap()).unwrap()
-    };
-    write(
-        folder.path(),
-        "cloth",
-        "x.json",
-        &["--fps", "25", "--summary", "s.json"],
-    );
+    let folder = &Folder::new();
+    let read = |name: &str| -> Value { folder.json(name) };
+    write(folder, "cloth", "x.json --fps 25 --summary s.json");
     let (summary, states) = (read("s.json"), read("x.json"));
     let last = &states[COUNT - 1];
     assert_eq!(summary["frames"], COUNT);
@@ -153,7 +146,7 @@ fn a_summary_says_what_became_of_the_energy() {
     assert!(stretch > 1.0 && stretch < 3.0, "{stretch}");
     assert!(summary["wall_time"].as_f64().unwrap() > 0.0);
     // A system without forces has no energy and no springs.
-    let said = write(folder.path(), "simple", "x.csv", &["--summary", "-"]);
+    let said = write(folder, "simple", "x.csv --summary -");
     let summary: Value = serde_json::from_str(&said).unwrap();
     assert!(summary["energy"].is_null() && summary["largest_stretch"].is_null());
     assert_eq!(summary["frames"], 7);

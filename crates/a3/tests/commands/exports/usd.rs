@@ -2,9 +2,9 @@
 //! library reads such files too; see docs/files.md.
 
 use std::collections::BTreeMap;
-use std::fs;
 
 use super::{COUNT, ELLIPSE, RATE, distance, normals, positions, run, triangles, write};
+use crate::common::Folder;
 
 /// Values of an attribute at each frame, as numbers one after another; at frame -1 if the attribute
 /// is constant.
@@ -50,9 +50,9 @@ fn vectors(numbers: &[f64]) -> Vec<[f32; 3]> {
 
 #[test]
 fn usd_moves_a_surface_with_smooth_normals() {
-    let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), "cloth", "f.usda", &["--fps", "25"]);
-    let (head, prims) = read(&fs::read_to_string(folder.path().join("f.usda")).unwrap());
+    let folder = &Folder::new();
+    write(folder, "cloth", "f.usda --fps 25");
+    let (head, prims) = read(&folder.read("f.usda"));
     for says in [
         "doc = \"a3: cloth\"",
         "startTimeCode = 0",
@@ -92,7 +92,7 @@ fn usd_moves_a_surface_with_smooth_normals() {
 
 #[test]
 fn usd_of_each_scene_is_whole() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = &Folder::new();
     for (scene, kinds) in [
         ("chain", &["BasisCurves springs", "Points particles"][..]),
         ("double-pendulum", &["Points particles"]),
@@ -100,8 +100,8 @@ fn usd_of_each_scene_is_whole() {
         ("t-handle", &["Mesh surface"]),
         (ELLIPSE, &["Mesh liquid", "Points particles"]),
     ] {
-        write(folder.path(), scene, "f.usda", &["--fps", "25"]);
-        let (_, prims) = read(&fs::read_to_string(folder.path().join("f.usda")).unwrap());
+        write(folder, scene, "f.usda --fps 25");
+        let (_, prims) = read(&folder.read("f.usda"));
         let found = prims.keys().map(String::as_str);
         assert_eq!(found.collect::<Vec<_>>(), kinds, "{scene}");
         for (prim, attributes) in &prims {

@@ -9,22 +9,18 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-use crate::common::{a3, gpu_is_missing, text};
+use crate::common::{Words, a3, gpu_is_missing, text};
 use image::codecs::gif::GifDecoder;
 use image::{AnimationDecoder, Frame, RgbaImage};
 
-const CLOTH: [&str; 9] = [
-    "render", "v", "0.01", "--until", "0.5", "--size", "160x120", "--output", "film.gif",
-];
-
-/// Returns the arguments of `CLOTH` with another file, and further arguments.
-fn with<'a>(name: &'a str, more: &[&'a str]) -> Vec<&'a str> {
-    [&CLOTH[..8], &[name], more].concat()
+/// Returns the arguments of a film of the cloth, with its file and further arguments.
+fn with(output: &str) -> String {
+    format!("render v 0.01 --until 0.5 --size 160x120 --output {output}")
 }
 
 /// Makes a film. Returns false if there is no adapter to draw with.
-fn made(folder: &Path, words: &[&str]) -> bool {
-    let output = a3(folder, words);
+fn made(folder: &Path, words: impl Words) -> bool {
+    let output = a3(folder, &words);
     if gpu_is_missing(&output) {
         return false;
     }

@@ -5,22 +5,16 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::{difference, made, picture, with};
-use crate::common::{asked, command, complaint, gpu_is_missing, is_missing, text};
+use crate::common::{Folder, asked, command, complaint, gpu_is_missing, is_missing, text};
 
 #[test]
 fn an_mp4_is_what_it_should_be() {
-    let folder = tempfile::tempdir().unwrap();
-    if is_missing("ffmpeg")
-        || is_missing("ffprobe")
-        || !made(folder.path(), &with("film.mp4", &["--fps", "50"]))
-    {
+    let folder = &Folder::new();
+    if is_missing("ffmpeg") || is_missing("ffprobe") || !made(folder, with("film.mp4 --fps 50")) {
         return;
     }
-    let says = asked(
-        folder.path(),
-        "ffprobe",
-        &["-v", "error", "-count_frames", "-show_streams", "film.mp4"],
-    );
+    let words = "-v error -count_frames -show_streams film.mp4";
+    let says = asked(folder, "ffprobe", words);
     for line in [
         "codec_name=h264",
         "pix_fmt=yuv420p",
@@ -33,28 +27,12 @@ fn an_mp4_is_what_it_should_be() {
         assert!(says.lines().any(|said| said == line), "{line} in\n{says}");
     }
     // The last frame, decoded, is the picture of its time.
-    asked(
-        folder.path(),
-        "ffmpeg",
-        &[
-            "-v",
-            "error",
-            "-i",
-            "film.mp4",
-            "-vf",
-            "select=eq(n\\,25)",
-            "-frames:v",
-            "1",
-            "last.png",
-        ],
-    );
-    assert!(made(folder.path(), &with("x.png", &[])));
-    let (_, mean) = difference(
-        &picture(folder.path(), "last.png"),
-        &picture(folder.path(), "x.png"),
-    );
+    let words = "-v error -i film.mp4 -vf select=eq(n\\,25) -frames:v 1 last.png";
+    asked(folder, "ffmpeg", words);
+    assert!(made(folder, with("x.png")));
+    let (_, mean) = difference(&picture(folder, "last.png"), &picture(folder, "x.png"));
     assert!(mean < 2.0, "mean difference {mean}");
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+    assert_eq!(folder.count(), 3);
 }
 
 /// Writes a script in the place of ffmpeg.
@@ -71,7 +49,7 @@ fn stand_in(folder: &Path, script: &str) {
 #[test]
 #[cfg(unix)]
 fn when_ffmpeg_fails_nothing_is_left_but_its_reason() {
-    let (folder, programs) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let (folder, programs) = (&Folder::new(), &Folder::new());
     for (script, why) in [
         (
             "echo no such codec >&2; echo no film >&2; exit 1",
@@ -87,9 +65,9 @@ fn when_ffmpeg_fails_nothing_is_left_but_its_reason() {
             "the film is incomplete",
         ),
     ] {
-        stand_in(programs.path(), script);
-        let path = format!("{}:/usr/bin:/bin", programs.path().display());
-        let output = command(folder.path(), &with("film.mp4", &[]))
+        stand_in(programs, script);
+        let path = format!("{}:/usr/bin:/bin", programs.display());
+        let output = command(folder, with("film.mp4"))
             .env("PATH", path)
             .output()
             .unwrap();
@@ -100,7 +78,7 @@ fn when_ffmpeg_fails_nothing_is_left_but_its_reason() {
             complaint(&output, 1),
             format!("error: film.mp4: could not be written: ffmpeg failed: {why}")
         );
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        assert_eq!(folder.count(), 0);
     }
 }
 
@@ -108,21 +86,16 @@ fn when_ffmpeg_fails_nothing_is_left_but_its_reason() {
 #[test]
 #[cfg(unix)]
 fn a_second_interrupt_ends_at_once_and_leaves_nothing() {
-    let (folder, programs) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    stand_in(programs.path(), "cat >/dev/null; sleep 5");
-    let words = [
-        "render", "v", "0.01", "--until", "1000", "--size", "80x60", "--output", "x.mp4",
-    ];
-    let path = format!("{}:/usr/bin:/bin", programs.path().display());
-    let child = command(folder.path(), &words)
-        .env("PATH", path)
-        .spawn()
-        .unwrap();
+    let (folder, programs) = (&Folder::new(), &Folder::new());
+    stand_in(programs, "cat >/dev/null; sleep 5");
+    let words = "render v 0.01 --until 1000 --size 80x60 --output x.mp4";
+    let path = format!("{}:/usr/bin:/bin", programs.display());
+    let child = command(folder, words).env("PATH", path).spawn().unwrap();
     let id = child.id().to_string();
     std::thread::sleep(Duration::from_secs(2));
     let begun = Instant::now();
     for _ in 0..2 {
-        asked(folder.path(), "kill", &["-INT", &id]);
+        asked(folder, "kill", ["-INT", &id]);
         std::thread::sleep(Duration::from_millis(500));
     }
     let output = child.wait_with_output().unwrap();
@@ -131,5 +104,5 @@ fn a_second_interrupt_ends_at_once_and_leaves_nothing() {
     }
     assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
     assert!(begun.elapsed() < Duration::from_secs(4));
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    assert_eq!(folder.count(), 0);
 }

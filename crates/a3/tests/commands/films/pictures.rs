@@ -3,17 +3,17 @@
 use std::fs;
 
 use super::{difference, made, picture, with};
-use crate::common::TEARING;
+use crate::common::{Folder, TEARING};
 
 #[test]
 fn numbered_pictures_are_those_of_their_times() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::create_dir(folder.path().join("film")).unwrap();
-    let words = with("film/f-##.png", &["--fps", "10", "--from", "0.2"]);
-    if !made(folder.path(), &words) {
+    let folder = &Folder::new();
+    fs::create_dir(folder.join("film")).unwrap();
+    let words = with("film/f-##.png --fps 10 --from 0.2");
+    if !made(folder, &words) {
         return;
     }
-    let mut names: Vec<_> = fs::read_dir(folder.path().join("film"))
+    let mut names: Vec<_> = fs::read_dir(folder.join("film"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
@@ -24,30 +24,22 @@ fn numbered_pictures_are_those_of_their_times() {
         ("film/f-03.png", "0.4"),
         ("film/f-04.png", "0.5"),
     ] {
-        let words = [
-            "render", "v", "0.01", "--until", time, "--size", "160x120", "--output", "x.png",
-        ];
-        assert!(made(folder.path(), &words));
-        let off = difference(
-            &picture(folder.path(), name),
-            &picture(folder.path(), "x.png"),
-        );
+        let words = format!("render v 0.01 --until {time} --size 160x120 --output x.png");
+        assert!(made(folder, words));
+        let off = difference(&picture(folder, name), &picture(folder, "x.png"));
         assert_eq!(off, (0, 0.0), "{name}");
     }
 }
 
 #[test]
 fn trails_and_highlighted_springs_are_filmed_too() {
-    let folder = tempfile::tempdir().unwrap();
-    let words = [
-        "render", "r", "0.05", "--scene", "simple", "--until", "6", "--size", "320x240",
-    ];
-    let words = |more: &[&'static str]| [&words[..], more].concat();
-    if !made(folder.path(), &words(&["--output", "#.png", "--fps", "1"])) {
+    let folder = &Folder::new();
+    let words = "render r 0.05 --scene simple --until 6 --size 320x240";
+    if !made(folder, format!("{words} --output #.png --fps 1")) {
         return;
     }
     let teal = |name: &str| {
-        let picture = picture(folder.path(), name);
+        let picture = picture(folder, name);
         let teal = |p: &&image::Rgba<u8>| p.0[2].saturating_sub(p.0[0]) > 40;
         picture.pixels().filter(teal).count()
     };
@@ -56,13 +48,13 @@ fn trails_and_highlighted_springs_are_filmed_too() {
         counts[0] == 0 && counts[1] > 20 && counts[2] > counts[1],
         "{counts:?}"
     );
-    let plain = with("plain-#.png", &["--fps", "2"]);
-    assert!(made(folder.path(), &plain));
-    let marked = with("marked-#.png", &["--fps", "2", "--springs-of", "210"]);
-    assert!(made(folder.path(), &marked));
+    let plain = with("plain-#.png --fps 2");
+    assert!(made(folder, &plain));
+    let marked = with("marked-#.png --fps 2 --springs-of 210");
+    assert!(made(folder, &marked));
     let (most, _) = difference(
-        &picture(folder.path(), "plain-2.png"),
-        &picture(folder.path(), "marked-2.png"),
+        &picture(folder, "plain-2.png"),
+        &picture(folder, "marked-2.png"),
     );
     assert!(most > 100);
 }
@@ -70,39 +62,16 @@ fn trails_and_highlighted_springs_are_filmed_too() {
 /// No cloth is drawn across a tear.
 #[test]
 fn what_has_torn_is_not_drawn() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("tearing.toml"), TEARING).unwrap();
-    let words = [
-        "render",
-        "--scene",
-        "tearing.toml",
-        "--until",
-        "0.8",
-        "--size",
-        "320x120",
-        "--fps",
-        "10",
-        "--output",
-        "f-#.png",
-    ];
-    if !made(folder.path(), &words) {
+    let folder = &Folder::new();
+    folder.write("tearing.toml", TEARING);
+    let words = "render --scene tearing.toml --until 0.8 --size 320x120 --fps 10 --output f-#.png";
+    if !made(folder, words) {
         return;
     }
-    let last = [
-        "render",
-        "--scene",
-        "tearing.toml",
-        "--until",
-        "0.8",
-        "--size",
-        "320x120",
-    ];
-    assert!(made(
-        folder.path(),
-        &[&last[..], &["--output", "last.png"]].concat()
-    ));
+    let last = "render --scene tearing.toml --until 0.8 --size 320x120 --output last.png";
+    assert!(made(folder, last));
     for name in ["f-1.png", "f-9.png", "last.png"] {
-        let picture = picture(folder.path(), name);
+        let picture = picture(folder, name);
         let is_red = |x: u32, y: u32| {
             let [r, g, b, _] = picture.get_pixel(x, y).0;
             r > 100 && g < 90 && b < 90

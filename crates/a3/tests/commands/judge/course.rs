@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::charts::said;
+use crate::common::said;
 
 pub type Triple = [f64; 3];
 
@@ -180,9 +180,9 @@ pub fn write(path: &Path, h: f64, states: &[[Vec<Triple>; 2]], velocities: bool)
 }
 
 /// Judges files in JSON.
-pub fn judged(folder: &Path, scene: &str, files: &[&str]) -> Vec<Value> {
-    let words = [&["judge", "--scene", scene, "--summary", "-"], files].concat();
-    serde_json::from_str(&said(folder, &words)).unwrap()
+pub fn judged(folder: &Path, scene: &str, files: &str) -> Vec<Value> {
+    let report = said(folder, format!("judge --scene {scene} --summary - {files}"));
+    serde_json::from_str(&report).unwrap()
 }
 
 /// A small cloth with damped springs, a thousand times smaller if `small`.

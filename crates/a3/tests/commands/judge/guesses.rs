@@ -1,21 +1,17 @@
 //! What `a3 judge` finds out of a program by itself: its step, its precision, and its constants.
 
-use std::fs;
-
 use super::course::{Course, Step, cloth, judged, slowed, symplectic, trapezoid, write};
-use crate::charts::said;
+use crate::common::{Folder, said};
 
 #[test]
 fn the_step_is_found_if_rows_lie_between_steps() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
+    let folder = &Folder::new();
     let simulate = |step: &str| {
         let words = "--scene chain --fps 30 --until 2 --output mine.csv";
-        let words = ["simulate", "t", step].into_iter().chain(words.split(' '));
-        said(folder, &words.collect::<Vec<_>>());
+        said(folder, format!("simulate t {step} {words}"));
     };
     simulate("0.01");
-    let found = judged(folder, "chain", &["mine.csv"]).remove(0);
+    let found = judged(folder, "chain", "mine.csv").remove(0);
     let method = &found["method"];
     assert_eq!(method["solver"], "trapezoid", "{found:#}");
     assert_eq!(
@@ -24,14 +20,14 @@ fn the_step_is_found_if_rows_lie_between_steps() {
     );
     // A step that nobody types is asked for, and no neighbour is named.
     simulate("0.0137");
-    let words = ["judge", "--scene", "chain", "mine.csv"];
-    let report = said(folder, &words);
+    let words = "judge --scene chain mine.csv";
+    let report = said(folder, words);
     assert!(
         report.contains("if its step is another, add --step"),
         "{report}"
     );
     assert!(!report.contains("nearest"), "{report}");
-    let report = said(folder, &[&words[..], &["--step", "0.0137"]].concat());
+    let report = said(folder, format!("{words} --step 0.0137"));
     assert!(report.contains("(Heun) at 0.0137 s"), "{report}");
 }
 
@@ -39,11 +35,10 @@ fn the_step_is_found_if_rows_lie_between_steps() {
 /// steps.
 #[test]
 fn the_step_is_found_in_a_file_of_many_rows() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
+    let folder = &Folder::new();
     let words = "simulate r 0.0005 --scene double-pendulum --fps 20000 --until 0.5 -o mine.csv";
-    said(folder, &words.split(' ').collect::<Vec<_>>());
-    let found = judged(folder, "double-pendulum", &["mine.csv"]).remove(0);
+    said(folder, words);
+    let found = judged(folder, "double-pendulum", "mine.csv").remove(0);
     assert_eq!(found["method"]["solver"], "rk4", "{found:#}");
     assert_eq!(found["method"]["step"], 5e-4);
     assert!(found["times"].as_array().unwrap().len() <= 2000);
@@ -52,21 +47,20 @@ fn the_step_is_found_in_a_file_of_many_rows() {
 
 #[test]
 fn single_precision_is_recognised() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    fs::write(folder.join("cloth.toml"), cloth(false)).unwrap();
+    let folder = &Folder::new();
+    folder.write("cloth.toml", cloth(false));
     for (scene, h) in [("chain", 0.01f32), ("cloth.toml", 0.004)] {
-        let course = Course::of(&said(folder, &["scenes", "--print", scene, "--list"]));
+        let course = Course::of(&said(folder, format!("scenes --print {scene} --list")));
         write(
             &folder.join("mine.csv"),
             f64::from(h),
             &course.run_single(h, 60),
             true,
         );
-        let report = said(folder, &["judge", "--scene", scene, "mine.csv"]);
+        let report = said(folder, format!("judge --scene {scene} mine.csv"));
         let line = format!("agrees with symplectic Euler at {h} s in single precision to ");
         assert!(report.contains(&line), "{report}");
-        let found = judged(folder, scene, &["mine.csv"]).remove(0);
+        let found = judged(folder, scene, "mine.csv").remove(0);
         assert_eq!(found["method"]["single_precision"], true, "{found:#}");
         // A few wrong digits in double precision are no single precision.
         let mut states = course.run(symplectic, f64::from(h), 60);
@@ -77,18 +71,17 @@ fn single_precision_is_recognised() {
             .flatten()
             .for_each(|x| *x *= 1.0 + 1e-7);
         write(&folder.join("other.csv"), f64::from(h), &states, true);
-        let found = judged(folder, scene, &["other.csv"]).remove(0);
+        let found = judged(folder, scene, "other.csv").remove(0);
         assert!(found["method"].is_null(), "{found:#}");
     }
 }
 
 #[test]
 fn constants_that_are_a_little_off_are_named() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    fs::write(folder.join("cloth.toml"), cloth(false)).unwrap();
+    let folder = &Folder::new();
+    folder.write("cloth.toml", cloth(false));
     for (scene, h) in [("chain", 0.01), ("cloth.toml", 0.004)] {
-        let list = said(folder, &["scenes", "--print", scene, "--list"]);
+        let list = said(folder, format!("scenes --print {scene} --list"));
         let mut light = Course::of(&list);
         light.gravity = light.gravity.map(|g| g * 9.8 / 9.81);
         let mut stiff = Course::of(&list);
@@ -106,14 +99,14 @@ fn constants_that_are_a_little_off_are_named() {
         ];
         for (name, course, step, constant, factor) in runs {
             write(&folder.join(name), h, &course.run(step, h, 60), true);
-            let found = judged(folder, scene, &[name]).remove(0);
+            let found = judged(folder, scene, name).remove(0);
             let way = &found["method"];
             assert_eq!(way["constant"], constant, "{scene} {name}: {found:#}");
             let off = way["factor"].as_f64().unwrap() - factor;
             assert!(off.abs() < 1e-7, "{scene} {name}: {off}");
         }
     }
-    let report = said(folder, &["judge", "--scene", "cloth.toml", "g.csv"]);
+    let report = said(folder, "judge --scene cloth.toml g.csv");
     let words = "but with a gravity of 9.8 m/s² in place of 9.81 m/s²";
     assert!(report.contains(words), "{report}");
 }

@@ -3,10 +3,7 @@
 mod course;
 mod guesses;
 
-use std::fs;
-
-use super::charts::said;
-use crate::common::{a3, complaint, simulate, text};
+use crate::common::{Folder, a3, complaint, said, simulate, text};
 use course::{
     Course, Step, Triple, cloth, euler, judged, positions_first, symplectic, trapezoid,
     trapezoid_late, write,
@@ -14,16 +11,15 @@ use course::{
 
 #[test]
 fn methods_and_mistakes_of_another_program_are_named() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    fs::write(folder.join("large.toml"), cloth(false)).unwrap();
-    fs::write(folder.join("small.toml"), cloth(true)).unwrap();
+    let folder = &Folder::new();
+    folder.write("large.toml", cloth(false));
+    folder.write("small.toml", cloth(true));
     for (scene, h) in [
         ("chain", 0.01),
         ("large.toml", 0.004),
         ("small.toml", 0.004),
     ] {
-        let list = said(folder, &["scenes", "--print", scene, "--list"]);
+        let list = said(folder, format!("scenes --print {scene} --list"));
         let course = || Course::of(&list);
         let mut half = course();
         half.gravity = half.gravity.map(|g| g / 2.0);
@@ -87,9 +83,8 @@ fn methods_and_mistakes_of_another_program_are_named() {
         for (k, (run, name)) in runs.iter().zip(&names).enumerate() {
             write(&folder.join(name), h, &run.1.run(run.2, h, 60), k % 2 == 0);
         }
-        let names: Vec<_> = names.iter().map(String::as_str).collect();
-        for (found, (name, _, _, title, mistake)) in judged(folder, scene, &names).iter().zip(runs)
-        {
+        let found = judged(folder, scene, &names.join(" "));
+        for (found, (name, _, _, title, mistake)) in found.iter().zip(runs) {
             let method = &found["method"];
             assert_eq!(method["title"], *title, "{scene} {name}: {found:#}");
             let slip =
@@ -108,9 +103,8 @@ fn methods_and_mistakes_of_another_program_are_named() {
 
 #[test]
 fn errors_orders_and_limits_are_told() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    let course = Course::of(&said(folder, &["scenes", "--print", "chain", "--list"]));
+    let folder = &Folder::new();
+    let course = Course::of(&said(folder, "scenes --print chain --list"));
     for (name, h) in [("a.csv", 0.02), ("b.csv", 0.01)] {
         let count = (1.0 / h) as usize;
         write(
@@ -120,33 +114,30 @@ fn errors_orders_and_limits_are_told() {
             true,
         );
     }
-    let both = ["judge", "--scene", "chain", "a.csv", "b.csv"];
-    let report = said(folder, &both);
+    let both = "judge --scene chain a.csv b.csv";
+    let report = said(folder, both);
     let order = report.lines().find_map(|line| line.strip_prefix("order "));
     let order: f64 = order.unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!((order - 2.0).abs() < 0.05, "{report}");
     // The error at the end is that against an accurate run.
-    let exact = simulate(
-        folder,
-        &["dop853", "1e-12", "--scene", "chain", "--until", "1"],
-    );
+    let exact = simulate(folder, "dop853 1e-12 --scene chain --until 1");
     let exact: Vec<Triple> = serde_json::from_value(exact["positions"].clone()).unwrap();
     let [x, _] = &course.run(trapezoid, 0.02, 50)[50];
     let pairs = x.as_flattened().iter().zip(exact.as_flattened());
     let square: f64 = pairs.map(|(a, b)| (a - b).powi(2)).sum();
-    let found = &judged(folder, "chain", &["a.csv"])[0];
+    let found = &judged(folder, "chain", "a.csv")[0];
     let errors = found["errors"].as_array().unwrap();
     let last = errors.last().unwrap().as_f64().unwrap();
     let own = (square / x.len() as f64).sqrt();
     assert!((last - own).abs() < 1e-9, "{last} {own}");
     // The limit is between the errors of both.
     let worst = |k: usize| {
-        judged(folder, "chain", &both[3..])[k]["error"]
+        judged(folder, "chain", "a.csv b.csv")[k]["error"]
             .as_f64()
             .unwrap()
     };
-    let limit = (worst(0) * worst(1)).sqrt().to_string();
-    let missed = a3(folder, &[&both[..], &["--within", &limit]].concat());
+    let limit = (worst(0) * worst(1)).sqrt();
+    let missed = a3(folder, format!("{both} --within {limit}"));
     assert_eq!(missed.status.code(), Some(1));
     let why = text(&missed.stderr);
     assert!(
@@ -154,18 +145,15 @@ fn errors_orders_and_limits_are_told() {
         "{why}"
     );
     assert!(text(&missed.stdout).contains("within    yes"));
-    said(
-        folder,
-        &["judge", "--scene", "chain", "b.csv", "--within", &limit],
-    );
+    let words = format!("judge --scene chain b.csv --within {limit}");
+    said(folder, words);
 }
 
 #[test]
 fn every_format_is_read_alike() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
+    let folder = &Folder::new();
     let of = |file: &str| {
-        let found = judged(folder, "chain", &[file, "--step", "0.01"]).remove(0);
+        let found = judged(folder, "chain", &format!("{file} --step 0.01")).remove(0);
         let method = &found["method"];
         assert_eq!(method["solver"], "rk4", "{file}: {found:#}");
         (
@@ -176,13 +164,12 @@ fn every_format_is_read_alike() {
     let mut all = vec![];
     for file in ["a.csv", "a.json", "a.npz"] {
         let words = "simulate rk4 0.01 --scene chain --until 1 --fps 60 --output";
-        let words: Vec<_> = words.split(' ').chain([file]).collect();
-        said(folder, &words);
+        said(folder, format!("{words} {file}"));
         all.push(of(file));
     }
     assert!(all.iter().all(|found| *found == all[0]), "{all:?}");
     // Another program's names, separators and digits.
-    let csv = fs::read_to_string(folder.join("a.csv")).unwrap();
+    let csv = folder.read("a.csv");
     let digits = |cell: &str| cell.parse().map_or(cell.into(), |x: f64| format!("{x:.7}"));
     let lines = csv.lines().map(|line| {
         let cells: Vec<_> = line.split(',').map(digits).collect();
@@ -190,23 +177,21 @@ fn every_format_is_read_alike() {
         [cells[1].as_str(), particle, &cells[3], &cells[4], &cells[5]].join("; ")
     });
     let rounded: Vec<_> = lines.collect();
-    fs::write(folder.join("b.txt"), rounded.join("\n")).unwrap();
-    let found = judged(folder, "chain", &["b.txt", "--step", "0.01"]).remove(0);
+    folder.write("b.txt", rounded.join("\n"));
+    let found = judged(folder, "chain", "b.txt --step 0.01").remove(0);
     assert_eq!(found["method"]["solver"], "rk4", "{found:#}");
     assert!(found["energy_error"].is_null());
 }
 
 #[test]
 fn a_list_is_read_back_and_moves_alike() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    fs::write(folder.join("cloth.toml"), cloth(false)).unwrap();
+    let folder = &Folder::new();
+    folder.write("cloth.toml", cloth(false));
     for scene in ["pendulum", "chain", "mit", "cloth.toml"] {
-        let list = said(folder, &["scenes", "--print", scene, "--list"]);
-        fs::write(folder.join("list.json"), list).unwrap();
+        let list = said(folder, format!("scenes --print {scene} --list"));
+        folder.write("list.json", list);
         let end = |scene: &str| {
-            let words = ["rk4", "0.005", "--until", "0.5", "--scene", scene];
-            let state = simulate(folder, &words);
+            let state = simulate(folder, format!("rk4 0.005 --until 0.5 --scene {scene}"));
             serde_json::from_value::<Vec<Triple>>(state["positions"].clone()).unwrap()
         };
         let (listed, own) = (end("list.json"), end(scene));
@@ -220,19 +205,18 @@ fn a_list_is_read_back_and_moves_alike() {
         ("simple", "single equation"),
         ("drop", "fluid"),
     ] {
-        let why = complaint(&a3(folder, &["scenes", "--print", scene, "--list"]), 2);
+        let why = complaint(&a3(folder, format!("scenes --print {scene} --list")), 2);
         assert!(why.contains(part), "{why}");
     }
 }
 
 #[test]
 fn a_file_that_does_not_fit_is_refused_in_a_line_and_those_beside_it_are_judged() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    let course = Course::of(&said(folder, &["scenes", "--print", "pendulum", "--list"]));
+    let folder = &Folder::new();
+    let course = Course::of(&said(folder, "scenes --print pendulum --list"));
     let states = course.run(symplectic, 0.01, 20);
     write(&folder.join("good.csv"), 0.01, &states, false);
-    let good = fs::read_to_string(folder.join("good.csv")).unwrap();
+    let good = folder.read("good.csv");
     for (bad, why) in [
         (String::new(), "empty"),
         ("1,2,3".into(), "names no time"),
@@ -261,16 +245,13 @@ fn a_file_that_does_not_fit_is_refused_in_a_line_and_those_beside_it_are_judged(
             "line 3: it has 8 columns",
         ),
     ] {
-        fs::write(folder.join("bad.csv"), bad).unwrap();
-        let line = complaint(&a3(folder, &["judge", "--scene", "pendulum", "bad.csv"]), 2);
+        folder.write("bad.csv", bad);
+        let line = complaint(&a3(folder, "judge --scene pendulum bad.csv"), 2);
         assert!(
             line.starts_with("error: bad.csv: ") && line.contains(why),
             "{line}"
         );
-        let both = a3(
-            folder,
-            &["judge", "--scene", "pendulum", "bad.csv", "good.csv"],
-        );
+        let both = a3(folder, "judge --scene pendulum bad.csv good.csv");
         assert_eq!(both.status.code(), Some(2));
         assert!(text(&both.stdout).contains("agrees with symplectic Euler at 0.01 s"));
         assert!(text(&both.stderr).contains(why));
@@ -282,11 +263,8 @@ fn a_file_that_does_not_fit_is_refused_in_a_line_and_those_beside_it_are_judged(
         .iter()
         .map(|line| format!("{},nan,0,0,nan,0,0", line.split(',').next().unwrap()));
     let lines: Vec<_> = kept.iter().cloned().chain(lost).collect();
-    fs::write(folder.join("lost.csv"), lines.join("\n")).unwrap();
-    let lost = a3(
-        folder,
-        &["judge", "--scene", "pendulum", "lost.csv", "--within", "1"],
-    );
+    folder.write("lost.csv", lines.join("\n"));
+    let lost = a3(folder, "judge --scene pendulum lost.csv --within 1");
     assert_eq!(lost.status.code(), Some(1));
     assert!(
         text(&lost.stdout).contains("not finite from 0.14 s on"),
@@ -298,27 +276,19 @@ fn a_file_that_does_not_fit_is_refused_in_a_line_and_those_beside_it_are_judged(
 
 #[test]
 fn files_are_on_the_chart() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    let course = Course::of(&said(folder, &["scenes", "--print", "pendulum", "--list"]));
+    let folder = &Folder::new();
+    let course = Course::of(&said(folder, "scenes --print pendulum --list"));
     write(
         &folder.join("first-try.csv"),
         0.01,
         &course.run(euler, 0.01, 100),
         false,
     );
-    for more in [&[][..], &["--seconds", "0.001"]] {
-        let words = [
-            "judge",
-            "--scene",
-            "pendulum",
-            "first-try.csv",
-            "--chart",
-            "chart.svg",
-        ];
-        let report = said(folder, &[&words[..], more].concat());
+    for more in ["", "--seconds 0.001"] {
+        let words = "judge --scene pendulum first-try.csv --chart chart.svg";
+        let report = said(folder, format!("{words} {more}"));
         assert!(report.ends_with("chart: chart.svg\n"), "{report}");
-        let picture = fs::read_to_string(folder.join("chart.svg")).unwrap();
+        let picture = folder.read("chart.svg");
         assert!(picture.contains("first-try"), "{more:?}");
         assert_eq!(picture.contains("computing time"), !more.is_empty());
     }
@@ -328,13 +298,12 @@ fn files_are_on_the_chart() {
 /// apart from the start.
 #[test]
 fn a_run_that_explodes_is_named_by_its_first_rows() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    let course = Course::of(&said(folder, &["scenes", "--print", "chain", "--list"]));
+    let folder = &Folder::new();
+    let course = Course::of(&said(folder, "scenes --print chain --list"));
     let states = course.run(euler, 0.1, 300);
     assert!(states[300][0][3][1].abs() > 1e20);
     write(&folder.join("lost.csv"), 0.1, &states, true);
-    let found = judged(folder, "chain", &["lost.csv"]).remove(0);
+    let found = judged(folder, "chain", "lost.csv").remove(0);
     assert_eq!(
         found["method"]["title"], "explicit Euler",
         "{:#}",
