@@ -1,10 +1,12 @@
 //! Watch over a run: finds blow-ups at the ends of steps and where something changes the run.
 
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::balance::Balance;
 use super::power::{End, Evaluated, Power, energy_of};
 use super::state::RunState;
+use crate::columns::row;
 use crate::contact::{Obstacle, Statistics};
 use crate::control::Control;
 use crate::error::{Cause, Error};
@@ -231,7 +233,12 @@ impl Watch {
         let mut work = self.power.work(network, End { order, ..end }, is_due);
         if impulse > 0.0 {
             // Upper bound of the work of obstacles.
-            let speed = |obstacle: &Obstacle| fastest(obstacle, t, self.radius);
+            let n = network.particles();
+            let reach = |from: Vector3<f64>| {
+                let away = (0..n).map(|i| (row(y, n, i) - from).norm());
+                away.fold(0.0, f64::max) + self.radius
+            };
+            let speed = |obstacle: &Obstacle| fastest(obstacle, t, reach);
             let speeds = network.obstacles().iter().map(speed);
             work += impulse * speeds.fold(0.0, f64::max);
             balance.leave_open();
@@ -285,10 +292,15 @@ fn kick(network: &Network, Interval { t, h }: Interval, y: &[f64], rates: &mut V
     if energy.is_finite() { energy } else { 0.0 }
 }
 
-/// Returns an upper bound of the speed (m/s) of an obstacle's points within a scene of that radius
-/// (m).
-fn fastest(obstacle: &Obstacle, t: f64, radius: f64) -> f64 {
+/// Returns an upper bound of the speed (m/s) of the points of an obstacle that something can touch.
+/// `reach` returns a distance (m) from a place up to which there is something.
+fn fastest(obstacle: &Obstacle, t: f64, reach: impl Fn(Vector3<f64>) -> f64) -> f64 {
     let pose = obstacle.at(t);
     let spin = pose.orientation.map_or(0.0, |turned| turned.spin.norm());
-    pose.place.velocity.norm() + spin * 2.0 * radius
+    let turning = if spin > 0.0 {
+        spin * reach(pose.place.position)
+    } else {
+        0.0
+    };
+    pose.place.velocity.norm() + turning
 }
