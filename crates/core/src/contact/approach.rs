@@ -11,6 +11,7 @@ use nalgebra::Vector3;
 
 use super::obstacle::{Course, Obstacle, velocity};
 use crate::geometry::closest::Separation;
+use crate::path::Pose;
 
 /// Length below which an interval is not halved, as a share of the step.
 const MIN_INTERVAL: f64 = 1e-7;
@@ -87,9 +88,15 @@ impl<'a> Approach<'a> {
         (seen - normal * distance, normal)
     }
 
+    /// Returns the place and orientation of the obstacle at the beginning.
+    fn begun(&self) -> Pose {
+        let [begun, _] = self.obstacle.at_ends([self.t, self.t + self.course.h]);
+        begun
+    }
+
     /// Returns whether the particle approaches the surface at the beginning.
     pub fn closes(&self) -> bool {
-        let (pose, normal) = (self.obstacle.at(self.t), self.separation(0.0).normal);
+        let (pose, normal) = (self.begun(), self.separation(0.0).normal);
         let away = self.course.x[0] - pose.place.position;
         let speed = self.course.v[0] - velocity(&pose, away);
         pose.outwards(normal).dot(&speed) < 0.0
@@ -100,7 +107,7 @@ impl<'a> Approach<'a> {
     /// depend on the acceleration towards the surface by the share of the step (m).
     pub fn flight(&self, least: impl Fn(f64) -> f64) -> Option<f64> {
         let begun = self.separation(0.0);
-        let pose = self.obstacle.at(self.t);
+        let pose = self.begun();
         let (normal, away) = (
             pose.outwards(begun.normal),
             self.course.x[0] - pose.place.position,

@@ -6,6 +6,9 @@ use crate::error::{Error, at_least, share};
 use crate::geometry::Shape;
 use crate::path::{Path, Pose, Turn};
 
+/// Difference of two times, over their size, that is a rounding error.
+const SAME_TIME: f64 = 4.0 * f64::EPSILON;
+
 /// Body that particles stay out of, still or moving.
 ///
 /// ```
@@ -59,6 +62,25 @@ impl Obstacle {
             place: self.path.at(t),
             orientation: self.turn.map(|turn| turn.orientation(t)),
         }
+    }
+
+    /// Lists the times at which its motion begins or ends (s). Some may be infinite or occur twice.
+    pub(crate) fn known_times(&self) -> impl Iterator<Item = f64> {
+        let of_turn = self.turn.into_iter().flat_map(|turn| turn.known_times());
+        self.path.known_times().into_iter().chain(of_turn)
+    }
+
+    /// Returns the place and orientation at both ends of a step (s): where a motion begins or ends
+    /// at one, with the velocities on the side of the step.
+    pub(super) fn at_ends(&self, [begin, end]: [f64; 2]) -> [Pose; 2] {
+        let near = |t: f64| {
+            let mut known = self.known_times();
+            known.find(|known| (known - t).abs() <= SAME_TIME * t.abs())
+        };
+        [
+            self.at(near(begin).map_or(begin, |known| known.max(begin))),
+            self.at(near(end).map_or(end, |known| known.min(end).next_down())),
+        ]
     }
 
     /// Returns the depth (m) of a place (m) inside at time t (s); below 0 outside.

@@ -2,6 +2,7 @@
 
 use super::evaluation::prescribed;
 use super::parts::Network;
+use crate::contact::Obstacle;
 
 /// Lets the pins hold that hold at time t (s), and lets go of all others. Returns whether that
 /// changes any.
@@ -43,16 +44,26 @@ pub(crate) fn jump_near(network: &Network, t: f64, none: f64) -> Option<f64> {
 }
 
 /// Returns the first time (s) past which no step of any method goes that begins at t (s): where a
-/// pin lets go or, after more than `none` (s), the velocity of one jumps that constraints hold.
-/// Infinite if there is none.
+/// pin lets go or, after more than `none` (s), the velocity of one jumps that constraints hold, or
+/// that of an obstacle with restitution. Infinite if there is none.
 pub(crate) fn next_break(network: &Network, t: f64, none: f64) -> f64 {
-    next_release(network).min(next_jump(network, t + none))
+    let jump = next_jump(network, t + none).min(next_blow(network, t + none));
+    next_release(network).min(jump)
+}
+
+/// Returns the first time after t (s) at which an obstacle with restitution begins or ends to move,
+/// and may strike what lies on it; infinite if there is none.
+fn next_blow(network: &Network, t: f64) -> f64 {
+    let elastic = network.solids().iter().filter(|it| it.restitution > 0.0);
+    let times = elastic.flat_map(Obstacle::known_times);
+    times.filter(|time| *time > t).fold(f64::INFINITY, f64::min)
 }
 
 /// Returns whether a step between two times (s) would go past such a time, or end within `none` (s)
 /// of a jump.
 pub(crate) fn breaks_between(network: &Network, [t, end]: [f64; 2], none: f64) -> bool {
-    next_release(network) < end || next_jump(network, t + none) <= end + none
+    let jump = next_jump(network, t + none).min(next_blow(network, t + none));
+    next_release(network) < end || jump <= end + none
 }
 
 /// Forgets the pins that have let go: none of them holds again at an earlier time.

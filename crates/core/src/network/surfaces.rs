@@ -210,11 +210,9 @@ impl Prescribed<'_> {
     /// go; infinite if there is none.
     pub fn next_known_time(&self, t: f64) -> f64 {
         let of_pins = self.particles.pins().iter().flat_map(Pin::known_times);
-        let of_paths = self.obstacles.iter().flat_map(|it| it.path.known_times());
-        let all = of_pins
-            .chain(of_paths)
-            .chain(self.turns().flat_map(|turn| turn.known_times()));
-        let all = all.chain(self.wind.into_iter().flat_map(Wind::known_times));
+        let of_obstacles = self.obstacles.iter().flat_map(Obstacle::known_times);
+        let of_wind = self.wind.into_iter().flat_map(Wind::known_times);
+        let all = of_pins.chain(of_obstacles).chain(of_wind);
         all.filter(|time| *time > t).fold(f64::INFINITY, f64::min)
     }
 

@@ -2,7 +2,7 @@
 
 use crate::common::{described, method};
 use a3_core::integrators::METHODS;
-use a3_core::{Simulation, Vector3};
+use a3_core::{Control, Simulation, Vector3};
 
 const G: Vector3<f64> = Vector3::new(0.0, -9.81, 0.0);
 const RESTITUTION: f64 = 0.6;
@@ -127,6 +127,45 @@ fn rebounds_have_their_closed_forms() {
         for name in ["rk4", "verlet", "trapezoid"] {
             let off = off(name, 1e-3);
             assert!(off < 1e-5, "{name}: {off:e}\n{toml}");
+        }
+    }
+}
+
+/// A box that begins to rise at once strikes what lies on it, by every method.
+#[test]
+fn a_box_that_begins_to_rise_strikes_what_lies_on_it() {
+    for restitution in [0.0, 0.5, 1.0] {
+        let scene = format!(
+            "gravity = [0, -9.81, 0]
+            [[box]]
+            center = [0, 0.25, 0]
+            size = [2, 0.5, 2]
+            restitution = {restitution}
+            shift = {{ by = [0, 1, 0], start = 0.5, end = 1.0 }}
+            [particles]
+            positions = [[0, 0.5, 0]]
+            mass = 1"
+        );
+        let fixed = [
+            ("rk4", 1e-3),
+            ("rk4", 7e-4),
+            ("verlet", 1e-2),
+            ("implicit", 1e-3),
+        ];
+        let fixed = fixed.map(|(name, step)| (name, Control::Step(step)));
+        for (name, control) in fixed
+            .into_iter()
+            .chain([("dopri5", Control::Tolerance(1e-6))])
+        {
+            let mut run = Simulation::new(described(&scene), method(name), control).unwrap();
+            run.advance_to(0.51).unwrap();
+            let falls = if restitution > 0.0 { 0.0981 } else { 0.0 };
+            let expected = 2.0 * (1.0 + restitution) - falls;
+            let found = run.velocities()[1];
+            assert!(
+                (found - expected).abs() < 1e-3,
+                "{name} {control:?}, e {restitution}: {found}, {expected}"
+            );
         }
     }
 }
