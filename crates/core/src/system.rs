@@ -103,8 +103,8 @@ pub trait ParticleSystem {
         &[]
     }
 
-    /// Returns the row, the column and the value of each entry of M that is not 0, column by column,
-    /// if the system is M y' = f(t, y) with a constant matrix M; empty if M is 1.
+    /// Returns the row, the column and the value of each entry of M that is not 0, column by
+    /// column, if the system is M y' = f(t, y) with a constant matrix M; empty if M is 1.
     ///
     /// M may be singular: then some equations have no derivative, and have to determine the numbers
     /// that the others leave open (index 1). Only Radau IIA and BDF solve such systems.

@@ -162,26 +162,20 @@ impl Constraint {
     /// Returns whether it is a rope or the end of a joint that, with this error (m) and its rate
     /// (m/s), is passed, or will be in a moment.
     pub(super) fn is_passed(&self, [value, rate]: [f64; 2], what: Projected) -> bool {
-        let (Self::Stop(Stop {
-            joint: Joint { length, .. },
-            restitution,
-            ..
-        })
-        | Self::Rope {
-            length,
-            restitution,
-            ..
-        }) = self
-        else {
+        let (Self::Stop(Stop { restitution, .. }) | Self::Rope { restitution, .. }) = self else {
             return false;
         };
         match what {
             Projected::Places => value > 0.0,
             // An elastic one rebounds where it is passed.
-            Projected::Velocities => {
-                *restitution == 0.0 && value > -AT_END_SHARE * length && rate > 0.0
-            }
+            Projected::Velocities => *restitution == 0.0 && self.is_at_end(value) && rate > 0.0,
         }
+    }
+
+    /// Returns whether, with this error (m), a rope is at its length, or a joint at its end.
+    pub(super) fn is_at_end(&self, value: f64) -> bool {
+        let length = self.length().filter(|_| self.is_one_sided());
+        length.is_some_and(|length| value > -AT_END_SHARE * length)
     }
 
     /// Returns whether it is a rope that is clearly shorter than its length.

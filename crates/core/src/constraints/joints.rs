@@ -261,14 +261,24 @@ pub(crate) fn beyond(
         .collect()
 }
 
-/// Returns the numbers of the taut ropes whose ends part, and of the held ends of joints that move
-/// past them.
-pub(crate) fn parting(constraints: &Constraints, state: [&[f64]; 2], turned: Turned) -> Vec<usize> {
-    let parts = |number: &usize| {
-        let own = one_sided(constraints, *number, state, turned);
-        own.is_some_and(|own| own.rate > 0.0)
-    };
-    taut(constraints).filter(parts).collect()
+/// Makes ropes at their length taut, and holds joints that are at an end.
+pub(crate) fn hold_at_ends(constraints: &mut Constraints, state: [&[f64]; 2], turned: Turned) {
+    for number in 0..constraints.all.len() {
+        if let Some(own) = one_sided(constraints, number, state, turned) {
+            constraints.holds[number] |= constraints.all[number].is_at_end(own.value);
+        }
+    }
+}
+
+/// Returns the rates (m/s) at which the ends of taut ropes part, and held joints move past their
+/// ends, with the numbers of these constraints.
+pub(crate) fn rates(
+    constraints: &Constraints,
+    state: [&[f64]; 2],
+    turned: Turned,
+) -> Vec<(usize, f64)> {
+    let rate = |number| Some((number, one_sided(constraints, number, state, turned)?.rate));
+    taut(constraints).filter_map(rate).collect()
 }
 
 /// Returns the ropes that are taut, by their numbers, in order.

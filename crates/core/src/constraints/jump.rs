@@ -80,8 +80,36 @@ pub(crate) fn jump(
     for row in &system.rows {
         row.spread(row.multiplier, &mut impulses);
     }
+    effects(constraints, &system, &impulses)
+}
+
+/// Returns the effects of an impulse along the row of each taut rope, and of each held end of a
+/// joint, in the state (x, v). `weight` and `turning` are those of [`jump`].
+pub(crate) fn pulls(
+    constraints: &Constraints,
+    weight: impl Fn(usize) -> f64,
+    turning: impl Fn(usize) -> Turning,
+    state: [&[f64]; 2],
+) -> Vec<Vec<Pushed>> {
+    let mut system = System::default();
+    constraints.prepare(&mut system, weight, turning);
+    constraints.build(state, &mut system, None, |_, _, _, _, _| 0.0);
+    let rows = system.rows.iter().zip(&constraints.owners);
+    let taut = rows.filter(|(row, (owner, _))| {
+        constraints.all[*owner].is_one_sided() && constraints.holds[*owner] && !row.is_left_out()
+    });
+    taut.map(|(row, _)| {
+        let mut impulses = vec![Vector3::zeros(); constraints.moved.len()];
+        row.spread(1.0, &mut impulses);
+        effects(constraints, &system, &impulses)
+    })
+    .collect()
+}
+
+/// Returns the effects of these impulses on all that constraints move, by its place.
+fn effects(constraints: &Constraints, system: &System, impulses: &[Vector3<f64>]) -> Vec<Pushed> {
     let all = constraints.moved.iter().zip(impulses).enumerate();
-    all.map(|(k, (moved, impulse))| {
+    all.map(|(k, (moved, &impulse))| {
         let change = impulse.component_mul(&system.weights[k]);
         let [impulse, change] = match &system.turnings[k] {
             Some(turning) => [impulse, change].map(|along| turning.rotation * along),
@@ -126,7 +154,7 @@ impl Constraint {
     }
 
     /// Returns its own length (m), if it has one.
-    fn length(&self) -> Option<f64> {
+    pub(super) fn length(&self) -> Option<f64> {
         match *self {
             Self::Rod { length, .. } | Self::Rope { length, .. } => Some(length),
             Self::Circle { radius, .. } | Self::Sphere { radius, .. } => Some(radius),

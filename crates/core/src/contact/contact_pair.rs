@@ -383,3 +383,10 @@ pub(super) struct Least {
     /// Coefficient of friction.
     pub friction: f64,
 }
+
+impl Least {
+    /// Returns a speed (m/s) that compares with those of the impact.
+    pub fn size(&self) -> f64 {
+        self.speed.abs() + self.before.norm()
+    }
+}

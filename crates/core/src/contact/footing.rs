@@ -19,14 +19,28 @@ use nalgebra::Vector3;
 
 use super::candidates::{Candidates, Linear};
 use super::listing::Candidate;
+use super::motion::{Hit, Motion};
 use super::repulsion::Pair;
-use super::skin::KEPT_SHARE;
+use super::skin::{KEPT_SHARE, Law};
 use super::surface::Surface;
-use crate::geometry::{PairKind, closest};
+use crate::error::Vertex;
+use crate::geometry::{Closest, PairKind, closest};
 
-/// Place at which a single point touches a primitive of a rigid shape.
+/// Largest distance of two places of contact that count as one point, over the thickness: two
+/// primitives of one plane touch a corner or an edge from no farther apart than their ranges.
+const NEIGHBOUR_SHARE: f64 = 2.0;
+
+/// Largest speed of one thing relative to another, along the normal of contact with one of them,
+/// over that at which the range of the other is entered: 0 for level things at rest, 1 for one that
+/// falls beside the other.
+const ACROSS_SHARE: f64 = 0.5;
+
+/// Place at which one side of a pair touches a primitive of a rigid shape.
 struct Footing {
+    /// First vertex of the side.
     point: u32,
+    /// Closest point of the side that touches, without its radius (m).
+    at: Vector3<f64>,
     /// Depth within the thickness (m).
     depth: f64,
     /// Closest point of the primitive's surface (m), and the unit vector from there to the point.
@@ -40,12 +54,11 @@ struct Footing {
 }
 
 impl Footing {
-    /// Returns whether the primitive lies behind the plane at another place of the same point.
-    fn is_behind(&self, other: &Self) -> bool {
+    /// Returns whether the primitive rises by at most a height (m) above the plane at another place
+    /// of the same point.
+    fn is_behind(&self, other: &Self, most: f64) -> bool {
         let height = |corner: &Vector3<f64>| (corner - other.foot).dot(&other.normal) + self.radius;
-        self.corners
-            .iter()
-            .all(|corner| height(corner) <= self.tolerance)
+        self.corners.iter().all(|corner| height(corner) <= most)
     }
 }
 
@@ -64,7 +77,7 @@ fn visit_bare<R>(found: Vec<(Option<Footing>, R)>, mut visit: impl FnMut(R)) {
         for (number, k) in group.iter().enumerate() {
             hidden[*k] = group[..number].iter().any(|other| {
                 let both = found[*k].0.as_ref().zip(found[*other].0.as_ref());
-                both.is_some_and(|(own, other)| own.is_behind(other))
+                both.is_some_and(|(own, other)| own.is_behind(other, own.tolerance))
             });
         }
     }
@@ -126,7 +139,7 @@ impl Surface {
     }
 
     /// Returns whether a vertex is a point of an obstacle or of a rigid body.
-    fn is_hard(&self, vertex: u32) -> bool {
+    pub(super) fn is_hard(&self, vertex: u32) -> bool {
         vertex as usize >= self.particles() || self.solid(vertex).is_some()
     }
 
@@ -143,39 +156,116 @@ impl Surface {
     /// rigid shape.
     fn footing(&self, candidate: &Candidate, pair: &Pair) -> Option<Footing> {
         let [i, a, b, c] = candidate.points;
-        let [xi, xa, xb, xc] = pair.x;
         let is_edge = candidate.kind == PairKind::EdgeEdge;
-        // Point, a vertex of the other primitive, its corners, and the sign of its side.
-        let (point, other, corners, sign) = match candidate.kind {
-            PairKind::EdgeEdge if i == a => (i, b, [xb, xc, xc], 1.0),
-            PairKind::EdgeEdge if b == c => (b, i, [xi, xa, xa], -1.0),
+        // The side of the point, and a vertex of the other side.
+        let (side, other) = match candidate.kind {
+            PairKind::EdgeEdge if i == a => (0, b),
+            PairKind::EdgeEdge if b == c => (1, i),
             PairKind::EdgeEdge => return None,
-            _ => (i, a, [xa, xb, xc], 1.0),
+            _ => (0, a),
         };
+        let point = candidate.points[if is_edge { 2 * side } else { 0 }];
         if !self.is_single(point) || !self.is_hard(other) {
             return None;
         }
-        let x = if is_edge && sign < 0.0 { xb } else { xi };
-        let offset = closest(pair.kind, &pair.x).offset * sign;
-        let distance = offset.norm();
+        self.footing_of(candidate, &pair.law, &pair.x, side)
+    }
+
+    /// Returns the place at which one side of a pair at x (m) touches the other.
+    fn footing_of(
+        &self,
+        candidate: &Candidate,
+        law: &Law,
+        x: &[Vector3<f64>; 4],
+        side: usize,
+    ) -> Option<Footing> {
+        let sides = candidate.kind.sides();
+        let (own, other) = (sides[side].clone(), sides[1 - side].clone());
+        let sign = if side == 0 { 1.0 } else { -1.0 };
+        let Closest { weights, offset } = closest(candidate.kind, x);
+        let (offset, distance) = (offset * sign, offset.norm());
         let normal = offset / distance;
-        let reach = pair.law.skin.thickness + pair.law.radius;
-        let radius = self.radius(other);
-        let foot = x - normal * (distance - radius);
-        // The part of a floor that the point can touch.
+        let at = own.clone().map(|k| x[k] * (weights[k] * sign)).sum();
+        let reach = law.range();
+        let radius = self.radius(candidate.points[other.start]);
+        let foot = at - normal * (distance - radius);
+        // The part of a floor that the side can touch.
         let around = |along: f64, across: f64| foot + Vector3::new(along, 0.0, across) * reach;
-        let corners = match candidate.kind {
-            PairKind::VertexFloor => [around(1.0, 0.0), around(-0.5, 0.8), around(-0.5, -0.8)],
-            _ => corners,
+        let corners = if candidate.kind == PairKind::VertexFloor && side == 0 {
+            [around(1.0, 0.0), around(-0.5, 0.8), around(-0.5, -0.8)]
+        } else {
+            [0, 1, 2].map(|k| x[(other.start + k).min(other.end - 1)])
         };
         (distance > 0.0).then_some(Footing {
-            point,
+            point: candidate.points[own.start],
+            at,
             depth: reach - distance,
             foot,
             normal,
             corners,
             radius,
-            tolerance: KEPT_SHARE * pair.law.skin.thickness,
+            tolerance: KEPT_SHARE * law.skin.thickness,
         })
+    }
+
+    /// Returns whether a side of a pair, which enters the range of its repulsion, only slides on:
+    /// it touches something else at the same point, above which the other side does not rise, and
+    /// to which this moves across. So a box slides over the seam of two boxes.
+    pub(super) fn slides_on(
+        &self,
+        candidates: &Candidates,
+        motion: &Motion,
+        pair: &Candidate,
+        hit: Hit,
+    ) -> bool {
+        let seen = |pair: &Candidate, side: usize| {
+            let law = self.law(pair.kind, &pair.points);
+            let x = motion.places(pair, &law, hit);
+            let footing = law.is_dull.then(|| self.footing_of(pair, &law, &x, side));
+            let sides = pair.kind.sides();
+            let weights = closest(pair.kind, &x).weights;
+            let speeds = [side, 1 - side].map(|side| {
+                let sign = if side == 0 { 1.0 } else { -1.0 };
+                let own = sides[side].clone();
+                let parts = own.map(|k| motion.v[pair.points[k] as usize] * (weights[k] * sign));
+                parts.sum::<Vector3<f64>>()
+            });
+            Some(Seen {
+                footing: footing??,
+                speeds,
+                party: self.vertex(pair.points[sides[side].start]),
+                thickness: law.skin.thickness,
+            })
+        };
+        (0..2).filter_map(|side| seen(pair, side)).any(|entering| {
+            let others = candidates.near(0.0).filter(|other| *other != pair);
+            let mut others = others.flat_map(|other| [0, 1].map(|side| seen(other, side)));
+            others.any(|other| other.is_some_and(|known| entering.slides_on(&known)))
+        })
+    }
+}
+
+/// Side of a pair, where it touches.
+struct Seen {
+    footing: Footing,
+    /// Velocities (m/s) of its closest point and of that of the other side.
+    speeds: [Vector3<f64>; 2],
+    party: Vertex,
+    thickness: f64,
+}
+
+impl Seen {
+    /// Returns whether the side enters another range as it slides on the other side of a known
+    /// contact.
+    fn slides_on(&self, known: &Self) -> bool {
+        let (entering, footing) = (&self.footing, &known.footing);
+        let gap = known.thickness - footing.depth;
+        let across = (known.speeds[1] - self.speeds[1]).dot(&footing.normal);
+        let approach = (self.speeds[0] - self.speeds[1]).dot(&entering.normal);
+        known.party == self.party
+            && footing.depth > 0.0
+            && (footing.at - entering.at).norm() <= NEIGHBOUR_SHARE * known.thickness
+            && entering.is_behind(footing, gap)
+            && across.abs() <= ACROSS_SHARE * approach.abs()
     }
 }

@@ -16,7 +16,7 @@ use super::friction::apply_friction;
 use super::impulse::Impulses;
 use super::layer::{Buffers, ContactLayer};
 use super::listing::Candidate;
-use super::motion::{Guarded, Motion};
+use super::motion::{Guarded, Hit, Motion};
 use super::response::{Joined, Joints};
 use super::strike::{find, strike};
 use super::surface::Surface;
@@ -171,16 +171,16 @@ fn push_apart(
     let mut moved = vec![];
     for pass in 0..MAX_PASSES {
         let again = (pass > 0).then_some(&moved[..]);
-        let hits = find(surface, candidates, motion, again);
+        let hits = find(surface, candidates, motion, again, None);
         if hits.is_empty() {
             return true;
         }
         *changed = true;
         moved.clear();
         moved.resize(motion.x0.len(), false);
-        for (candidate, time) in hits {
-            guarded.first = guarded.first.min(time);
-            push(surface, &candidate, time, h, motion, guarded, &mut moved);
+        for (candidate, Hit { share, .. }) in hits {
+            guarded.first = guarded.first.min(share);
+            push(surface, &candidate, share, h, motion, guarded, &mut moved);
         }
         motion.cover(surface, candidates);
     }

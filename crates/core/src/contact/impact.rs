@@ -10,13 +10,12 @@ use nalgebra::Vector3;
 use super::contact_pair::{ContactPair, Least};
 use super::impulse::{rebound_speed, restored};
 use super::listing::Candidate;
-use super::motion::Motion;
-use super::response::{Joined, Joints};
+use super::motion::{Hit, Motion};
+use super::response::{Joined, Joints, Tie};
 use super::skin::Law;
-use super::solids::{Arm, Field};
+use super::solids::{Arm, Field, Solid};
 use super::surface::Surface;
 use crate::geometry::{Closest, closest, weighted};
-use crate::interval::Interval;
 
 /// Accuracy of the solution, as a share of the speed of an impact.
 const TOLERANCE: f64 = 1e-13;
@@ -33,19 +32,20 @@ pub(super) struct Blow {
     pub contact: ContactPair,
     /// Relative velocity before the impact, and the least speed at which the sides separate.
     pub least: Least,
-    /// Whether that is a speed of restitution.
-    pub rebounds: bool,
+    /// Whether the sides move on freely afterwards: with a speed of restitution, or into the range
+    /// of their repulsion.
+    pub is_free: bool,
     /// Impulse on the first side (N s).
     pub impulse: Vector3<f64>,
 }
 
 impl Blow {
     /// Creates a blow without an impulse yet.
-    pub fn new(contact: ContactPair, least: Least, rebounds: bool) -> Self {
+    pub fn new(contact: ContactPair, least: Least, is_free: bool) -> Self {
         Self {
             contact,
             least,
-            rebounds,
+            is_free,
             impulse: Vector3::zeros(),
         }
     }
@@ -59,8 +59,7 @@ impl Blow {
         let (so_far, least) = (self.impulse, &self.least);
         let change = self.contact.press(so_far, least, inverse_masses, changes);
         self.impulse += change;
-        let size = self.least.speed + self.least.before.norm();
-        self.contact.change(change).norm() <= TOLERANCE * size
+        self.contact.change(change).norm() <= TOLERANCE * self.least.size()
     }
 
     /// Tells constraints of the impulse, if they pass it on.
@@ -90,8 +89,9 @@ const ROUNDING: f64 = 1e-9;
 /// which the impacts gain none.
 pub(super) fn solve<'a>(
     blows: impl Iterator<Item = &'a mut Blow>,
+    ties: &mut [Tie],
     changes: &mut Field,
-    inverse_masses: &[f64],
+    (inverse_masses, solids): (&[f64], &[Solid]),
 ) {
     let mut blows: Vec<_> = blows.collect();
     let speeds: Vec<_> = blows.iter().map(|blow| blow.least.speed).collect();
@@ -99,15 +99,16 @@ pub(super) fn solve<'a>(
     let mut gains = |share: f64, changes: &mut Field| {
         changes.clone_from(&none);
         for (blow, speed) in blows.iter_mut().zip(&speeds) {
-            let kept = if blow.rebounds { share } else { 1.0 };
+            let kept = if blow.is_free { share } else { 1.0 };
             (blow.least.speed, blow.impulse) = (speed * kept, Vector3::zeros());
         }
-        sweep(&mut blows, changes, inverse_masses);
+        ties.iter_mut().for_each(Tie::slacken);
+        sweep((&mut blows, ties), changes, (inverse_masses, solids));
         let works = blows.iter().map(|blow| blow.work(changes));
         let (sum, size) = works.fold((0.0, 0.0), |(sum, size), work: f64| {
             (sum + work, size + work.abs())
         });
-        let may_gain = blows.iter().any(|blow| blow.rebounds);
+        let may_gain = blows.iter().any(|blow| blow.is_free);
         may_gain && sum > ROUNDING * size
     };
     if !gains(1.0, changes) {
@@ -126,11 +127,20 @@ pub(super) fn solve<'a>(
 }
 
 /// Passes over impacts until all impulses are right.
-fn sweep(blows: &mut [&mut Blow], changes: &mut Field, inverse_masses: &[f64]) {
+fn sweep(
+    (blows, ties): (&mut [&mut Blow], &mut [Tie]),
+    changes: &mut Field,
+    (inverse_masses, solids): (&[f64], &[Solid]),
+) {
+    let sizes = blows.iter().map(|blow| blow.least.size());
+    let fastest = sizes.fold(0.0, f64::max);
     for _ in 0..MAX_SWEEPS {
         let mut solved = true;
         for blow in &mut *blows {
             solved &= blow.press(changes, inverse_masses);
+        }
+        for tie in &mut *ties {
+            solved &= tie.press(changes, solids) <= TOLERANCE * fastest;
         }
         if solved {
             break;
@@ -149,15 +159,15 @@ pub(super) struct Impact {
 }
 
 impl Impact {
-    /// Returns the impact of a pair that touches at a share of a step of h (s).
+    /// Returns the impact of a pair that touches in a step of h (s).
     pub fn new(
         surface: &Surface,
         pair: &Candidate,
-        Interval { t: time, h }: Interval,
+        (hit, h): (Hit, f64),
         motion: &Motion,
     ) -> Option<Self> {
         let law: Law = surface.law(pair.kind, &pair.points);
-        let at = motion.places(pair, &law, time);
+        let (at, time) = (motion.places(pair, &law, hit), hit.share);
         let nearest = closest(pair.kind, &at);
         let (distance, normal) = nearest.apart(pair.kind)?;
         let begun = closest(pair.kind, &pair.of(&motion.x0)).apart(pair.kind);
@@ -210,9 +220,12 @@ impl Impact {
         let [start, end] = ends.map(|v| v.dot(&normal));
         let along = before.dot(&normal);
         let press = (start - end) / h;
-        let mut speed = rebound_speed(law.skin.restitution, -along, press, h);
-        let rebounds = speed > 0.0;
-        if !rebounds {
+        let mut speed = rebound_speed(law.restitution, -along, press, h);
+        let is_free = hit.enters || speed > 0.0;
+        if hit.enters {
+            // What parts them before the end of the step has acted inside the range.
+            speed += (along - end).min(0.0);
+        } else if !is_free {
             // They do not approach at the end of the step either.
             speed = (along - end).max(0.0);
             let approach = weighted(&weights, &pair.of(&motion.moves)).dot(&normal);
@@ -226,7 +239,7 @@ impl Impact {
         };
         Some(Self {
             candidate: *pair,
-            blow: Blow::new(contact, least, rebounds),
+            blow: Blow::new(contact, least, is_free),
             left,
         })
     }
@@ -257,7 +270,7 @@ impl Impact {
         let changed = contact.relative(changes).dot(&contact.normal);
         // A pair that does not rebound stays where it touched; for others, the course from there on
         // is new.
-        let span = if self.blow.rebounds {
+        let span = if self.blow.is_free {
             self.left
         } else {
             (contact.wanted / changed).clamp(0.0, h)

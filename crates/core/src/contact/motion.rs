@@ -71,6 +71,15 @@ impl AddAssign for Guarded {
     }
 }
 
+/// Time within a step at which a pair comes too near.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit {
+    /// Share of the step.
+    pub share: f64,
+    /// Whether it enters the range of its repulsion there.
+    pub enters: bool,
+}
+
 /// Motion of all vertices in a step.
 #[derive(Debug, Default)]
 pub(super) struct Motion {
@@ -148,12 +157,13 @@ impl Motion {
         self.flight.velocity(i, share, self.v[i])
     }
 
-    /// Returns the positions of the points of a pair at a share of the step (m): on straight lines
-    /// or, for an elastic pair, on the courses that [`impact`](Self::impact) looks at.
-    pub fn places(&self, pair: &Candidate, law: &Law, share: f64) -> [Vector3<f64>; 4] {
+    /// Returns the positions of the points of a pair at the share of the step of a hit (m): on
+    /// straight lines or on their courses, as [`impact`](Self::impact) looks at them.
+    pub fn places(&self, pair: &Candidate, law: &Law, hit: Hit) -> [Vector3<f64>; 4] {
+        let share = hit.share;
         pair.points.map(|i| {
             let i = i as usize;
-            if law.skin.restitution > 0.0 {
+            if law.skin.restitution > 0.0 || hit.enters {
                 let end = [self.x0[i] + self.moves[i], self.v[i]];
                 self.flight.position(i, share, end)
             } else {
@@ -203,16 +213,52 @@ impl Motion {
 
     /// Finds the share of the step at which a pair comes too near, if it does. An elastic pair does
     /// so on its course, so that its energy is right there.
-    pub fn impact(&self, surface: &Surface, candidate: &Candidate) -> Option<f64> {
-        let x = candidate.of(&self.x0);
-        let moves = candidate.of(&self.moves);
+    pub fn impact(&self, surface: &Surface, candidate: &Candidate) -> Option<Hit> {
         let law = surface.law(candidate.kind, &candidate.points);
-        if are_apart(candidate.kind, &x, &moves, 2.0 * law.max_kept()) {
+        let x = candidate.of(&self.x0);
+        let on_course = law.skin.restitution > 0.0;
+        let kept = || Self::kept(surface, candidate, &x);
+        let share = self.arrives(candidate, &law, (2.0 * law.max_kept(), on_course), kept)?;
+        Some(Hit {
+            share,
+            enters: false,
+        })
+    }
+
+    /// Finds the share of the step at which a pair that begins beyond the range of its repulsion
+    /// enters it on its course, if it does.
+    pub fn entry(&self, surface: &Surface, candidate: &Candidate) -> Option<Hit> {
+        let law = surface.law(candidate.kind, &candidate.points);
+        if !law.is_dull {
             return None;
         }
-        let kept = Self::kept(surface, candidate, &x);
+        let range = law.range();
+        let begun = closest(candidate.kind, &candidate.of(&self.x0)).apart(candidate.kind);
+        let is_beyond = begun.is_some_and(|(begun, _)| begun >= range - surface.rounding());
+        let share = self.arrives(candidate, &law, (range, is_beyond), || range);
+        let share = share.filter(|_| is_beyond)?;
+        Some(Hit {
+            share,
+            enters: true,
+        })
+    }
+
+    /// Finds the share of the step at which a pair comes as near as `kept` (m), in straight lines
+    /// or on its course, if it does: not if it is farther apart than `apart` (m).
+    fn arrives(
+        &self,
+        candidate: &Candidate,
+        law: &Law,
+        (apart, on_course): (f64, bool),
+        kept: impl Fn() -> f64,
+    ) -> Option<f64> {
+        let (x, moves) = (candidate.of(&self.x0), candidate.of(&self.moves));
+        if are_apart(candidate.kind, &x, &moves, apart) {
+            return None;
+        }
+        let kept = kept();
         let share = self.first_impact(candidate.kind, [&x, &moves], law.radius, kept)?;
-        if law.skin.restitution > 0.0 {
+        if on_course {
             self.arrival(candidate, share, kept)
         } else {
             Some(share)

@@ -16,7 +16,8 @@
 //! the speed u leaves with e u, however deep it gets, even if an impact with restitution e turns it
 //! back. A particle that the force cannot stop does not feel it, in either direction. F, F' and F''
 //! are zero where the force begins, so that methods of order four keep their order. Rigid pairs
-//! without restitution that are much too fast for the force hardly feel it.
+//! without restitution that are much too fast for the force hardly feel it: two hard sides have had
+//! their [impact](super::strike) where the force begins.
 //!
 //! Closest points of parallel edges jump. Therefore the potential of two edges is multiplied by a
 //! function of their angle that is 1 except near parallel edges, and 0 for parallel ones (Li et
@@ -25,19 +26,16 @@
 
 use nalgebra::Vector3;
 
-use super::skin::{Law, Skin};
+use super::skin::{Law, Skin, TURNING_LOSS};
 use crate::geometry::{PairKind, closest, weighted};
 
 /// Squared sine of the angle from which on two edges, four thicknesses long, repel each other
 /// fully.
 const FULL_CROSSING: f64 = 0.05;
 
-/// Share of its energy that a pair without restitution would keep because its force changes over a
-/// range of speeds: computed by quadrature, for one and for four points of a body.
-const TURNING_LOSS: f64 = 0.035;
-
-/// Speed of a rigid pair without restitution, over the speed that the repulsion stops, at which the
-/// repulsion is halved: much faster pairs are left to impulses, which are exact.
+/// Speed of a pair of a rigid and a soft side without restitution, over the speed that the
+/// repulsion stops, at which the repulsion is halved: much faster pairs are left to impulses, which
+/// are exact. Dull pairs have had their impact before they feel it.
 const HALF_SPEED_RATIO: f64 = 8.0;
 
 /// Step of the difference quotient of a force, as a share of the thickness.
@@ -121,24 +119,29 @@ impl Pair {
             1.0 - lost * r / root,
             -lost * c * size / (root * root * root),
         );
-        if self.law.stopped.is_infinite() {
-            return (factor, slope);
-        }
-        if self.law.skin.restitution > 0.0 {
-            let (felt, fades) = self.felt(rate);
-            return (factor * felt, slope * felt + factor * fades);
-        }
-        let speed = rate / (HALF_SPEED_RATIO * self.law.stopped);
-        let squared = speed * speed;
-        let felt = 1.0 / (1.0 + squared * squared);
-        let fades = -4.0 * squared * speed * felt * felt / (HALF_SPEED_RATIO * self.law.stopped);
+        let (felt, fades) = self.felt(rate);
         (factor * felt, slope * felt + factor * fades)
     }
 
-    /// Returns the share of the force that an elastic pair feels at a rate of the gap (m/s), and
-    /// its derivative with respect to the rate.
+    /// Returns the share of the force that a rigid or elastic pair feels at a rate of the gap
+    /// (m/s), and its derivative with respect to the rate.
     fn felt(&self, rate: f64) -> (f64, f64) {
         let Law { skin, stopped, .. } = self.law;
+        if stopped.is_infinite() {
+            return (1.0, 0.0);
+        }
+        if skin.restitution == 0.0 {
+            let half = stopped
+                * if self.law.is_dull {
+                    1.0
+                } else {
+                    HALF_SPEED_RATIO
+                };
+            let speed = rate / half;
+            let squared = speed * speed;
+            let felt = 1.0 / (1.0 + squared * squared);
+            return (felt, -4.0 * squared * speed * felt * felt / half);
+        }
         let fastest = if rate < 0.0 {
             stopped
         } else {
@@ -269,9 +272,6 @@ impl Pair {
     pub fn energy(&self) -> f64 {
         self.within().map_or(0.0, |within| {
             let potential = self.potential(within.share) * self.crossing().0;
-            if self.law.skin.restitution == 0.0 {
-                return potential;
-            }
             let rate = within.normal.dot(&weighted(&within.weights, &self.v));
             potential * self.felt(rate).0
         })

@@ -10,7 +10,7 @@ use super::impulse::{Impulses, change_in_impact, rebound_speed, shortest_rebound
 use super::layer::ContactLayer;
 use super::met::{Met, Noted, PointImpact, Statistics};
 use super::obstacle::{Obstacle, velocity};
-use super::response::Joined;
+use super::response::{Joined, Tie};
 use super::solids::Field;
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
@@ -293,6 +293,7 @@ fn resolve_noting(
     noted.rebounds.clear();
     noted.held.clear();
     for obstacle in obstacles {
+        let [before, after] = obstacle.at_ends([step.t, step.t + step.h]);
         let met = Met {
             x0: step.y0.get(..3 * n),
             v0: step.y0.get(3 * n..6 * n),
@@ -309,8 +310,8 @@ fn resolve_noting(
                 t: step.t,
                 h: step.h,
             },
-            before: obstacle.at(step.t),
-            after: obstacle.at(step.t + step.h),
+            before,
+            after,
             // A smooth floor moves particles vertically only.
             axes: if obstacle.shape == Shape::Floor {
                 1..2
@@ -352,13 +353,21 @@ fn pass_on(noted: &mut Noted, inverse_masses: &[f64], y1: &mut [f64]) {
             Blow::new(contact, impact.least, impact.least.speed > 0.0)
         })
         .collect();
+    let mut before = Field::still(n, 0);
+    for i in 0..n {
+        before[i] = row(&y1[3 * n..], n, i);
+    }
+    let mut ties = Tie::all(joined, &[], &before);
     let mut changes = Field::still(n, 0);
-    solve(blows.iter_mut(), &mut changes, inverse_masses);
+    let moving = (inverse_masses, &[][..]);
+    solve(blows.iter_mut(), &mut ties, &mut changes, moving);
     let mut moves = Field::still(n, 0);
+    let left = held.iter().map(|impact| impact.left).fold(0.0, f64::max);
+    ties.iter().for_each(|tie| tie.push(left, &mut moves));
     for (impact, blow) in held.iter().zip(&blows) {
         blow.contact
             .push(blow.impulse * impact.left, inverse_masses, &mut moves);
-        if blow.rebounds {
+        if blow.is_free {
             blow.note(&changes, joints);
         }
         noted.add_contact(impact.particle, blow.impulse);

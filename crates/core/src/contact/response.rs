@@ -2,11 +2,13 @@
 //!
 //! A rod or a joint passes an impulse on at once: what it holds gets the least change of its
 //! velocities, weighted by the masses, with the impulse that the constraints can follow. So a body
-//! on a hinge is struck with the mass that the hinge leaves it, and so is the end of a rod.
+//! on a hinge is struck with the mass that the hinge leaves it, and so is the end of a rod. A taut
+//! rope, or an end of a joint, only pulls: its impulse is found with those of the impacts.
 
 use nalgebra::Vector3;
 
 use super::solids::{Arm, Field, Solid};
+use crate::constraints::{Moved, Pushed};
 use crate::rigid::{ROTATION, Rotation};
 
 /// Constraints of a network.
@@ -15,8 +17,16 @@ pub(crate) trait Joints {
     fn hold(&self, i: usize) -> bool;
 
     /// Changes the velocities in the state y, which an impulse alone has given, by the least
-    /// amount, weighted by the masses, so that they fit the constraints.
+    /// amount, weighted by the masses, so that they fit the constraints, without ropes and ends of
+    /// joints.
     fn fit(&self, y: &mut [f64]);
+
+    /// Returns the effects of an impulse of each rope at its length, and of each joint at an end,
+    /// in the state y.
+    fn pulls(&self, y: &[f64]) -> Vec<Vec<Pushed>>;
+
+    /// Adds these effects to the velocities in the state y.
+    fn push(&self, effects: &[Pushed], y: &mut [f64]);
 
     /// Is told of an impulse (N s) that they have passed on, and of its work (J).
     fn note(&self, impulse: f64, work: f64);
@@ -29,11 +39,104 @@ pub(super) struct Joined<'a> {
     pub y: &'a [f64],
 }
 
+impl Joined<'_> {
+    /// Returns the state with velocities of zero, and its number of particles.
+    fn still(&self, solids: &[Solid]) -> (Vec<f64>, usize) {
+        let mut y = self.y.to_vec();
+        let n = (y.len() - ROTATION * solids.len()) / 6;
+        y[3 * n..6 * n].fill(0.0);
+        for k in 0..solids.len() {
+            write_momentum(&mut y, n, k, Vector3::zeros());
+        }
+        (y, n)
+    }
+}
+
+/// Returns the place of the rotation of body k in a state of n particles.
+fn numbers(n: usize, k: usize) -> std::ops::Range<usize> {
+    6 * n + ROTATION * k..6 * n + ROTATION * (k + 1)
+}
+
+/// Gives body k an angular momentum (kg m2/s) in a state of n particles.
+fn write_momentum(y: &mut [f64], n: usize, k: usize, momentum: Vector3<f64>) {
+    let q = Rotation::read(&y[numbers(n, k)]).q;
+    Rotation { q, momentum }.write(&mut y[numbers(n, k)]);
+}
+
+/// A vector for each of some particles without bodies, and two for each of some bodies: of the
+/// centre, and of the turn.
+struct Effect {
+    points: Vec<(usize, Vector3<f64>)>,
+    solids: Vec<(usize, [Vector3<f64>; 2])>,
+}
+
+impl Effect {
+    /// Reads the velocities (m/s) and angular velocities (rad/s) of the state y of n particles that
+    /// are not zero.
+    fn read(y: &[f64], n: usize, solids: &[Solid]) -> Self {
+        let speed = |i: usize| Vector3::from([3, 4, 5].map(|row| y[row * n + i]));
+        let on_bodies = |i: usize| {
+            let is_of = |solid: &Solid| solid.center == i || solid.points.contains(&i);
+            solids.iter().any(is_of)
+        };
+        let points = (0..n).filter(|i| speed(*i) != Vector3::zeros() && !on_bodies(*i));
+        let changed = (0..solids.len()).map(|k| {
+            let momentum = Rotation::read(&y[numbers(n, k)]).momentum;
+            (k, [speed(solids[k].center), solids[k].spun(momentum)])
+        });
+        Self {
+            points: points.map(|i| (i, speed(i))).collect(),
+            solids: changed
+                .filter(|(_, it)| *it != [Vector3::zeros(); 2])
+                .collect(),
+        }
+    }
+
+    /// Returns the impulses and angular impulses of a constraint.
+    fn of(pushed: &[Pushed], solids: &[Solid]) -> Self {
+        let (mut points, mut parts) = (vec![], vec![[Vector3::zeros(); 2]; solids.len()]);
+        for Pushed { moved, impulse, .. } in pushed {
+            match *moved {
+                Moved::Nothing => {}
+                Moved::Particle(i) => match solids.iter().position(|solid| solid.center == i) {
+                    Some(k) => parts[k][0] += impulse,
+                    None => points.push((i, *impulse)),
+                },
+                Moved::Body(k) => parts[k][1] += impulse,
+            }
+        }
+        Self {
+            points,
+            solids: parts.into_iter().enumerate().collect(),
+        }
+    }
+
+    /// Adds a multiple of the vectors to a field. The points of the bodies must be settled
+    /// afterwards.
+    fn add(&self, size: f64, field: &mut Field) {
+        for (i, change) in &self.points {
+            field[*i] += change * size;
+        }
+        for (k, change) in &self.solids {
+            field.change(*k, change.map(|change| change * size));
+        }
+    }
+
+    /// Returns the product with a field.
+    fn product(&self, field: &Field, solids: &[Solid]) -> f64 {
+        let of_points = self.points.iter().map(|(i, part)| part.dot(&field[*i]));
+        let of_solids = self.solids.iter().map(|(k, [along, turn])| {
+            let [moved, turned] = field.of_solid(*k, solids[*k].center);
+            along.dot(&moved) + turn.dot(&turned)
+        });
+        of_points.sum::<f64>() + of_solids.sum::<f64>()
+    }
+}
+
 /// Changes by an impulse of 1 N s in a direction.
 pub(super) struct Response {
     direction: Vector3<f64>,
-    points: Vec<(usize, Vector3<f64>)>,
-    solids: Vec<(usize, [Vector3<f64>; 2])>,
+    effect: Effect,
 }
 
 impl Response {
@@ -46,15 +149,12 @@ impl Response {
         arms: impl Iterator<Item = &'a Arm>,
         pushed: impl Iterator<Item = (usize, Vector3<f64>)>,
     ) -> Self {
-        let mut y = joined.y.to_vec();
-        let n = (y.len() - ROTATION * solids.len()) / 6;
-        y[3 * n..6 * n].fill(0.0);
+        let (mut y, n) = joined.still(solids);
         let add = |y: &mut [f64], i: usize, change: Vector3<f64>| {
             for axis in 0..3 {
                 y[(3 + axis) * n + i] += change[axis];
             }
         };
-        let numbers = |k: usize| 6 * n + ROTATION * k..6 * n + ROTATION * (k + 1);
         let mut momenta = vec![Vector3::zeros(); solids.len()];
         for arm in arms {
             let (k, impulse) = (arm.solid, direction * arm.sign);
@@ -65,43 +165,90 @@ impl Response {
             add(&mut y, i, change);
         }
         for (k, momentum) in momenta.into_iter().enumerate() {
-            let q = Rotation::read(&y[numbers(k)]).q;
-            Rotation { q, momentum }.write(&mut y[numbers(k)]);
+            write_momentum(&mut y, n, k, momentum);
         }
         joined.joints.fit(&mut y);
-        let speed = |i: usize| Vector3::from([3, 4, 5].map(|row| y[row * n + i]));
-        let on_bodies = |i: usize| {
-            let is_of = |solid: &Solid| solid.center == i || solid.points.contains(&i);
-            solids.iter().any(is_of)
-        };
-        let points = (0..n).filter(|i| speed(*i) != Vector3::zeros() && !on_bodies(*i));
-        let changed = (0..solids.len()).map(|k| {
-            let momentum = Rotation::read(&y[numbers(k)]).momentum;
-            (k, [speed(solids[k].center), solids[k].spun(momentum)])
-        });
         Self {
             direction,
-            points: points.map(|i| (i, speed(i))).collect(),
-            solids: changed
-                .filter(|(_, it)| *it != [Vector3::zeros(); 2])
-                .collect(),
+            effect: Effect::read(&y, n, solids),
         }
     }
 
     /// Lists the particles, without those of bodies, whose velocities change.
     pub fn points(&self) -> impl Iterator<Item = u32> {
-        self.points.iter().map(|(i, _)| *i as u32)
+        self.effect.points.iter().map(|(i, _)| *i as u32)
     }
 
     /// Changes a field by an impulse (N s), as far as it is in this direction. The points of the
     /// bodies must be settled afterwards.
     pub fn push(&self, impulse: Vector3<f64>, field: &mut Field) {
-        let size = self.direction.dot(&impulse);
-        for (i, change) in &self.points {
-            field[*i] += change * size;
-        }
-        for (k, change) in &self.solids {
-            field.change(*k, change.map(|change| change * size));
-        }
+        self.effect.add(self.direction.dot(&impulse), field);
+    }
+}
+
+/// Rope at its length, or joint at an end, in the impacts of one time: it pulls so that its ends do
+/// not part.
+pub(super) struct Tie {
+    /// Rate at which the ends part, as a product with velocities, and that rate before the impacts
+    /// (m/s).
+    parts: Effect,
+    rate: f64,
+    /// Changes by an impulse of 1 N s that the other constraints pass on, and the change of the
+    /// rate (1/kg).
+    effect: Effect,
+    mobility: f64,
+    /// Impulse (N s): at most 0.
+    pull: f64,
+}
+
+impl Tie {
+    /// Lists those of the constraints, with the velocities v (m/s) before the impacts.
+    pub fn all(joined: Joined, solids: &[Solid], v: &Field) -> Vec<Self> {
+        let pulls = joined.joints.pulls(joined.y);
+        let ties = pulls.iter().map(|pushed| {
+            let (mut y, n) = joined.still(solids);
+            joined.joints.push(pushed, &mut y);
+            joined.joints.fit(&mut y);
+            let (parts, effect) = (Effect::of(pushed, solids), Effect::read(&y, n, solids));
+            let mut changed = Field::still(v.len(), solids.len());
+            effect.add(1.0, &mut changed);
+            Self {
+                rate: parts.product(v, solids),
+                mobility: parts.product(&changed, solids),
+                pull: 0.0,
+                parts,
+                effect,
+            }
+        });
+        ties.filter(|tie| tie.mobility > 0.0).collect()
+    }
+
+    /// Forgets the impulse.
+    pub fn slacken(&mut self) {
+        self.pull = 0.0;
+    }
+
+    /// Changes the impulse so that the ends do not part, or not faster than before. Returns the
+    /// change of their rate (m/s).
+    pub fn press(&mut self, changes: &mut Field, solids: &[Solid]) -> f64 {
+        let rate = self.rate.min(0.0) + self.parts.product(changes, solids);
+        let pull = (self.pull - rate / self.mobility).min(0.0);
+        let change = pull - self.pull;
+        self.pull = pull;
+        self.effect.add(change, changes);
+        (change * self.mobility).abs()
+    }
+
+    /// Changes a field by the impulse, times a factor. The points of the bodies must be settled
+    /// afterwards.
+    pub fn push(&self, factor: f64, field: &mut Field) {
+        self.effect.add(self.pull * factor, field);
+    }
+
+    /// Lists the particles, without those of bodies, whose velocities change.
+    pub fn points(&self) -> impl Iterator<Item = u32> {
+        let pulls = self.pull != 0.0;
+        let points = self.effect.points.iter().filter(move |_| pulls);
+        points.map(|(i, _)| *i as u32)
     }
 }

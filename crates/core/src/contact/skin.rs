@@ -5,6 +5,10 @@ use crate::error::{Error, at_least, share};
 /// Least gap that is kept between two surfaces, as a share of their thickness.
 pub(super) const KEPT_SHARE: f64 = 1e-3;
 
+/// Share of its energy that a pair without restitution would keep because its force changes over a
+/// range of speeds: computed by quadrature, for one and for four points of a body.
+pub(super) const TURNING_LOSS: f64 = 0.035;
+
 /// Contact material of a surface. Where two surfaces meet, the thickness and the damping are the
 /// means of theirs, the stiffness is the smaller one, and the frictions and the restitution are the
 /// larger ones.
@@ -53,12 +57,23 @@ pub(super) struct Law {
     pub radius: f64,
     /// Speed of an approach that the repulsion stops at gap 0 (m/s), if a side is rigid or elastic.
     pub stopped: f64,
+    /// Whether both sides are hard, with less restitution than the repulsion can have: they have an
+    /// impact where it begins.
+    pub is_dull: bool,
+    /// Coefficient of restitution of their impacts. That of their skin, by which the repulsion
+    /// follows, is 0 if they are dull.
+    pub restitution: f64,
 }
 
 impl Law {
     /// Returns the largest distance that the pair keeps (m).
     pub fn max_kept(&self) -> f64 {
         self.radius + KEPT_SHARE * self.skin.thickness
+    }
+
+    /// Returns the distance (m) from which on the sides repel each other.
+    pub fn range(&self) -> f64 {
+        self.radius + self.skin.thickness
     }
 
     /// Returns the distance that the pair keeps (m), which is less than its distance at first; a

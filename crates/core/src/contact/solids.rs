@@ -49,6 +49,11 @@ impl Field {
         self.turns[solid] + self.changes[solid].turned
     }
 
+    /// Returns the vectors of a body, number k, with that centre: of the centre, and of the turn.
+    pub fn of_solid(&self, k: usize, center: usize) -> [Vector3<f64>; 2] {
+        [self.points[center] + self.changes[k].along, self.turn(k)]
+    }
+
     /// Changes the centre and the turn of a body, number k.
     pub fn change(&mut self, k: usize, [along, turned]: [Vector3<f64>; 2]) {
         self.changes[k].along += along;

@@ -1,6 +1,7 @@
 //! Impacts of rigid and of elastic bodies, at the time within the step at which they touch.
 //!
-//! Pairs that touch at one time get [impulses](super::impact). An
+//! Pairs that touch at one time get [impulses](super::impact); hard ones with little restitution do
+//! where they enter the range of their repulsion, unless they [slide on](Surface::slides_on). An
 //! impulse J acts at one point p of both bodies, a time s before the end of the step. A free body
 //! ends the step at x + s J / m with the angular momentum L + (p - x + s v) x J: as if it had moved
 //! from x - s v with the momentum m v + J. Its momentum and its angular momentum about any point
@@ -13,12 +14,11 @@ use nalgebra::Vector3;
 use super::candidates::{Candidates, Linear};
 use super::impact::{Impact, solve};
 use super::listing::Candidate;
-use super::motion::{Guarded, Motion};
-use super::response::{Joined, Response};
+use super::motion::{Guarded, Hit, Motion};
+use super::response::{Joined, Response, Tie};
 use super::solids::Field;
 use super::surface::Surface;
 use crate::geometry::{closest, weighted};
-use crate::interval::Interval;
 
 /// Largest number of times in a step at which a body has impacts.
 const MAX_TIMES: usize = 12;
@@ -33,40 +33,52 @@ pub(super) fn strike(
     guarded: &mut Guarded,
 ) -> bool {
     let mut changed = false;
-    let mut moved = vec![];
+    let (mut moved, mut entered) = (vec![], vec![]);
     for time in 0..MAX_TIMES {
         let again = (time > 0).then_some(&moved[..]);
-        let mut hits = find(surface, candidates, motion, again);
+        let mut hits = find(surface, candidates, motion, again, Some(&entered));
         hits.retain(|(pair, _)| surface.is_rigid_or_elastic_pair(pair.kind, &pair.points));
         moved.clear();
         moved.resize(motion.x0.len(), false);
         let hits = first_hits(surface, motion, hits, &mut moved);
         let mut impacts: Vec<Impact> = vec![];
-        for (pair, time) in hits {
-            let Some(mut impact) = Impact::new(surface, &pair, Interval { t: time, h }, motion)
-            else {
+        let known = entered.len();
+        for (pair, hit) in hits {
+            if hit.enters {
+                entered.push(pair);
+                pair.points.iter().for_each(|i| moved[*i as usize] = true);
+                if surface.slides_on(candidates, motion, &pair, hit) {
+                    continue;
+                }
+            }
+            let Some(mut impact) = Impact::new(surface, &pair, (hit, h), motion) else {
                 continue;
             };
-            if let Some(joined) = joined.filter(|_| impact.blow.rebounds) {
+            if let Some(joined) = joined.filter(|_| impact.blow.is_free) {
                 impact.join(joined, motion);
             }
             if !impacts
                 .iter()
                 .any(|other| impact.is_same_as(other, surface))
             {
-                guarded.first = guarded.first.min(time);
                 impacts.push(impact);
             }
         }
         let mut changes = Field::still(motion.x0.len(), motion.solids.len());
+        let is_held = |impact: &Impact| impact.blow.contact.is_joined();
+        let held = joined.filter(|_| impacts.iter().any(is_held));
+        let ties = held.map(|joined| Tie::all(joined, &motion.solids, &motion.v));
+        let mut ties = ties.unwrap_or_default();
         let blows = impacts.iter_mut().map(|impact| &mut impact.blow);
-        solve(blows, &mut changes, &motion.inverse_masses);
+        let moving = (&motion.inverse_masses[..], &motion.solids[..]);
+        solve(blows, &mut ties, &mut changes, moving);
         impacts.retain(|impact| impact.blow.impulse != Vector3::zeros());
-        if impacts.is_empty() {
+        if impacts.is_empty() && entered.len() == known {
             break;
         }
-        changed = true;
+        changed |= !impacts.is_empty();
         for impact in &impacts {
+            guarded.first = guarded.first.min(1.0 - impact.left / h);
             impact.apply(&changes, h, motion);
             if let Some(Joined { joints, .. }) = joined {
                 impact.blow.note(&changes, joints);
@@ -80,6 +92,15 @@ pub(super) fn strike(
             for i in struck {
                 moved[i as usize] = true;
                 motion.flight.since[i as usize] = 1.0 - impact.left / h;
+            }
+        }
+        let left = impacts.iter().map(|impact| impact.left).fold(0.0, f64::max);
+        for tie in &ties {
+            tie.push(1.0, &mut motion.v);
+            tie.push(left, &mut motion.moves);
+            for i in tie.points() {
+                moved[i as usize] = true;
+                motion.flight.since[i as usize] = 1.0 - left / h;
             }
         }
         for k in 0..motion.solids.len() {
@@ -111,14 +132,15 @@ fn parties(surface: &Surface, motion: &Motion, pair: &Candidate) -> impl Iterato
 fn first_hits(
     surface: &Surface,
     motion: &Motion,
-    mut hits: Vec<(Candidate, f64)>,
+    mut hits: Vec<(Candidate, Hit)>,
     moved: &mut [bool],
-) -> Vec<(Candidate, f64)> {
-    hits.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+) -> Vec<(Candidate, Hit)> {
+    hits.sort_by(|(_, a), (_, b)| a.share.total_cmp(&b.share));
     // Time of the first hit of each part; `None` if another pair has to come first.
     let mut times: BTreeMap<u32, Option<f64>> = BTreeMap::new();
     let mut first = vec![];
-    for (pair, time) in hits {
+    for (pair, hit) in hits {
+        let time = hit.share;
         let known: Vec<_> = parties(surface, motion, &pair)
             .filter_map(|i| times.get(&i).copied())
             .collect();
@@ -135,8 +157,8 @@ fn first_hits(
         for i in parties(surface, motion, &pair) {
             times.entry(i).or_insert(at.filter(|_| is_one));
         }
-        if let Some(at) = at.filter(|_| is_one) {
-            first.push((pair, at));
+        if let Some(share) = at.filter(|_| is_one) {
+            first.push((pair, Hit { share, ..hit }));
         } else {
             pair.points.iter().for_each(|i| moved[*i as usize] = true);
         }
@@ -144,14 +166,16 @@ fn first_hits(
     first
 }
 
-/// Finds the pairs that come too near, with the share of the step at which they do: all of them, or
-/// those with a vertex that has moved.
+/// Finds the pairs that come too near, with the time at which they do: all of them, or those with a
+/// vertex that has moved. Dull pairs come too near where they enter the range of their repulsion,
+/// except those that have `entered` it, or, without that list, all.
 pub(super) fn find(
     surface: &Surface,
     candidates: &Candidates,
     motion: &Motion,
     moved: Option<&[bool]>,
-) -> Vec<(Candidate, f64)> {
+    entered: Option<&[Candidate]>,
+) -> Vec<(Candidate, Hit)> {
     let whole = Linear {
         x: &motion.x0,
         moves: Some(&motion.moves.points),
@@ -159,13 +183,22 @@ pub(super) fn find(
     };
     let has_moved =
         |pair: &Candidate| moved.is_none_or(|moved| pair.points.iter().any(|i| moved[*i as usize]));
+    let entered = entered.filter(|_| !surface.rigid().is_empty());
     let distance = |pair: &Candidate| {
-        has_moved(pair).then(|| 2.0 * surface.law(pair.kind, &pair.points).max_kept())
+        has_moved(pair).then(|| {
+            let law = surface.law(pair.kind, &pair.points);
+            let may_enter = entered.is_some() && law.is_dull;
+            let nearest = if may_enter { law.range() } else { 0.0 };
+            nearest.max(2.0 * law.max_kept())
+        })
     };
-    let hit = |pair: &Candidate| Some((*pair, motion.impact(surface, pair)?));
+    let hit = |pair: &Candidate| {
+        let entered = entered.filter(|entered| !entered.contains(pair));
+        let entry = entered.and_then(|_| motion.entry(surface, pair));
+        Some((*pair, entry.or_else(|| motion.impact(surface, pair))?))
+    };
     let mut hits = vec![];
-    candidates.each(surface.nearest(), &whole, distance, hit, |hit| {
-        hits.push(hit);
-    });
+    let gap = entered.map_or_else(|| surface.nearest(), |_| 0.0);
+    candidates.each(gap, &whole, distance, hit, |hit| hits.push(hit));
     hits
 }

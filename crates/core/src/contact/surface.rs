@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use nalgebra::Vector3;
 
 use super::obstacle::Obstacle;
-use super::skin::{KEPT_SHARE, Law, Skin};
+use super::skin::{KEPT_SHARE, Law, Skin, TURNING_LOSS};
 use crate::error::Vertex;
 use crate::geometry::{PairKind, Shape};
 use crate::path::Place;
@@ -309,17 +309,26 @@ impl Surface {
             mass: 1.0 / (a.mass.recip() + b.mass.recip()),
         };
         // The speed at which the repulsion alone stops a body at gap 0.
-        let stopped = if self.is_rigid_or_elastic_pair(kind, points) {
-            skin.thickness * (skin.stiffness / (2.0 * skin.mass)).sqrt()
+        let restitution = skin.restitution;
+        let (stopped, is_dull) = if self.is_rigid_or_elastic_pair(kind, points) {
+            let is_hard = |k: usize| self.is_hard(points[k]);
+            (
+                skin.thickness * (skin.stiffness / (2.0 * skin.mass)).sqrt(),
+                restitution.powi(2) <= TURNING_LOSS && is_hard(0) && is_hard(kind.first()),
+            )
         } else {
-            f64::INFINITY
+            (f64::INFINITY, false)
         };
-        if skin.restitution > 0.0 {
+        if is_dull {
+            skin.restitution = 0.0;
+        } else if restitution > 0.0 {
             skin.damping = 1.0 / (TURN_SHARE * stopped);
         }
         Law {
             skin,
             stopped,
+            is_dull,
+            restitution,
             radius: self.radii(kind, points),
         }
     }

@@ -148,9 +148,9 @@ impl Method {
     /// Creates an own method from a function that takes a step and estimates its error, so that
     /// steps are chosen to a tolerance: from the [`Derivative`] f, t (s), y and h (s) it computes
     /// the state at t + h and the estimate, which falls as h to the power of `order`, or faster.
-    /// Between the ends of a step, states are on the cubic through both or, if further vectors `q_1`,
-    /// `q_2`, ... follow, at y + theta `q_1` + theta^2 `q_2` + ... with theta from 0 to 1. Their sum is
-    /// the change of y in the step.
+    /// Between the ends of a step, states are on the cubic through both or, if further vectors
+    /// `q_1`, `q_2`, ... follow, at y + theta `q_1` + theta^2 `q_2` + ... with theta from 0 to 1.
+    /// Their sum is the change of y in the step.
     ///
     /// Heun's method with the difference from Euler's as the estimate:
     ///
@@ -190,8 +190,8 @@ impl Method {
     /// difference from y1 estimates the error. Such a pair chooses its steps to a tolerance. There
     /// may be one weight more of f at the end of the step. The order follows from the tableau, and
     /// the times of the stages are the sums of their rows. Between the ends of a step, states are
-    /// on the cubic through both or, if `within` has rows of weights `p_ij`, as many as `estimate` may
-    /// have, at y + h sum `p_ij` theta^j `k_i`, with j from 1 on and theta from 0 to 1.
+    /// on the cubic through both or, if `within` has rows of weights `p_ij`, as many as `estimate`
+    /// may have, at y + h sum `p_ij` theta^j `k_i`, with j from 1 on and theta from 0 to 1.
     ///
     /// The pair of Bogacki and Shampine, of order 3:
     ///

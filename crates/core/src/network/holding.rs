@@ -150,9 +150,9 @@ pub(super) fn has_joints(network: &Network) -> bool {
 }
 
 /// Changes the velocities in the state y by the least amount, weighted by the masses, so that all
-/// constraints stay met.
+/// constraints stay met. Ropes and ends of joints hold where they are passed.
 pub(crate) fn project_velocities(network: &Network, y: &mut [f64]) {
-    push(network, y, (Projected::Velocities, false), Metric::Masses);
+    push(network, y, (Projected::Velocities, true), Metric::Masses);
 }
 
 /// Moves the state y by the least distance, weighted by the masses, to where all constraints are

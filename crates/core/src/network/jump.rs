@@ -9,7 +9,9 @@ use super::parts::Network;
 use super::{evaluation, rigid};
 use crate::columns::{row, set_row};
 use crate::constraints;
-use crate::constraints::{Constraint, Constraints, Moved, OneSided, Pushed, Struck, beyond};
+use crate::constraints::{
+    Constraint, Constraints, Moved, OneSided, Pushed, Struck, Turning, beyond,
+};
 use crate::contact::{rebound_speed, shortest_rebound};
 use crate::rows::Terms;
 use crate::system::ParticleSystem;
@@ -69,17 +71,24 @@ pub(crate) fn fit(network: &mut Network, t: f64, y: &mut [f64], least: Least) ->
     }
     let before = network.halves(y).1.to_vec();
     network.hold(t, y);
-    let [x, v] = halves(network, y);
-    let parting = constraints::parting(&network.constraints, [x, v], &|k| turned(network, k, y));
-    for number in parting {
-        constraints::set_taut(&mut network.constraints, number, false);
-    }
+    loosen_where(network, y, |rate| rate > 0.0);
     let mut all = Jump::default();
     all.add(strike(network, (t, &before), y, &[]));
     if let Some(tightened) = tighten(network, t, y, least) {
         all.add(tightened);
     }
     (all.change > 0.0).then_some(all)
+}
+
+/// Makes the taut ropes slack, and leaves the ends of joints, that part at such a rate (m/s) in the
+/// state y.
+fn loosen_where(network: &mut Network, y: &[f64], is_loose: impl Fn(f64) -> bool) {
+    let rates = constraints::rates(&network.constraints, halves(network, y), &|k| {
+        turned(network, k, y)
+    });
+    for (number, _) in rates.into_iter().filter(|(_, rate)| is_loose(*rate)) {
+        constraints::set_taut(&mut network.constraints, number, false);
+    }
 }
 
 /// Applies the impacts of the ropes that tighten in the state y at time t (s), if there are any.
@@ -128,14 +137,29 @@ impl Jump {
 }
 
 /// Changes the velocities in the state y, which an impulse alone has given, by what the constraints
-/// pass on of it: a taut rope does nothing if it would have to push.
+/// pass on of it, without ropes and ends of joints.
 pub(crate) fn pass_on(network: &Network, y: &mut [f64]) {
     if !has_ropes(network) {
         return project_velocities(network, y);
     }
-    let pushed = pushed(network, &mut network.constraints.clone(), y, &[]);
+    let mut lasting = network.constraints.clone();
+    constraints::set_all_taut(&mut lasting, &[]);
+    let pushed = pushed(network, &mut lasting, y, &[]);
     add(network, &pushed, y);
     network.bodies.settle(y);
+}
+
+/// Returns the effects of an impulse of each rope at its length, and of each joint at an end, in
+/// the state y.
+pub(crate) fn pulls(network: &Network, y: &[f64]) -> Vec<Vec<Pushed>> {
+    if !has_ropes(network) {
+        return vec![];
+    }
+    let mut all = network.constraints.clone();
+    constraints::hold_at_ends(&mut all, halves(network, y), &|k| turned(network, k, y));
+    solving(network, y, |weight, turning, state| {
+        constraints::pulls(&all, weight, turning, state)
+    })
 }
 
 /// Returns whether constraints hold a particle, or the body whose centre it is.
@@ -166,8 +190,7 @@ fn strike(
         });
     }
     let v = &y[3 * n..6 * n];
-    let fastest = v.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-    if struck.is_empty() && jump.change <= MAX_DRIFT * fastest {
+    if struck.is_empty() && jump.change <= MAX_DRIFT * fastest(network, y) {
         return Jump {
             change: 0.0,
             ..jump
@@ -185,9 +208,27 @@ fn strike(
     jump
 }
 
+/// Returns the largest component of a velocity (m/s) in the state y.
+fn fastest(network: &Network, y: &[f64]) -> f64 {
+    let v = network.halves(y).1.iter();
+    v.fold(0.0, |most: f64, v| most.max(v.abs()))
+}
+
 /// Returns the effects of the impulses of constraints on the velocities in the state y, where these
 /// ropes tighten.
 fn pushed(network: &Network, all: &mut Constraints, y: &[f64], struck: &[Struck]) -> Vec<Pushed> {
+    solving(network, y, |weight, turning, state| {
+        constraints::jump(all, struck, weight, turning, state)
+    })
+}
+
+/// Calls `solve` with the inverse masses (1/kg), the rotations of bodies, and the positions and
+/// velocities of the state y.
+fn solving<R>(
+    network: &Network,
+    y: &[f64],
+    solve: impl FnOnce(&dyn Fn(usize) -> f64, &dyn Fn(usize) -> Turning, [&[f64]; 2]) -> R,
+) -> R {
     let (x, v) = network.halves(y);
     let weight = |i: usize| network.particles.inverse_masses()[i];
     let loads = Loads {
@@ -196,11 +237,11 @@ fn pushed(network: &Network, all: &mut Constraints, y: &[f64], struck: &[Struck]
         torques: &vec![0.0; 3 * network.bodies().len()],
     };
     let turning = |k: usize| evaluation::turning(network, k, y, Terms::KickForces, loads).0;
-    constraints::jump(all, struck, weight, turning, [x, v])
+    solve(&weight, &turning, [x, v])
 }
 
 /// Adds these effects to the velocities in the state y.
-fn add(network: &Network, pushed: &[Pushed], y: &mut [f64]) {
+pub(crate) fn add(network: &Network, pushed: &[Pushed], y: &mut [f64]) {
     let n = network.particles();
     for pushed in pushed {
         match pushed.moved {
@@ -287,13 +328,30 @@ pub(crate) fn settle(network: &mut Network, t: f64, y: &[f64], none: f64) -> u64
     if !has_ropes(network) {
         return 0;
     }
+    let turned = |k| turned(network, k, y);
+    for rope in beyond(&network.constraints, halves(network, y), &turned, none) {
+        constraints::set_taut(&mut network.constraints, rope.number, true);
+    }
+    let_go(network, t, y)
+}
+
+/// Lets go of the taut ropes, and of the ends of joints, that an impact has left slack in the state
+/// y at time t (s). Returns the number of evaluations.
+pub(crate) fn slacken(network: &mut Network, t: f64, y: &[f64]) -> u64 {
+    if !has_ropes(network) {
+        return 0;
+    }
+    let none = MAX_DRIFT * fastest(network, y);
+    loosen_where(network, y, |rate| rate < -none);
+    let_go(network, t, y)
+}
+
+/// Lets go of the taut ropes, and of the ends of joints, that do not pull in the state y at time
+/// t (s). Returns the number of evaluations.
+fn let_go(network: &mut Network, t: f64, y: &[f64]) -> u64 {
     let mut all = std::mem::take(&mut network.constraints);
     let turned = |k| turned(network, k, y);
-    let state = halves(network, y);
-    constraints::loosen(&mut all, state[0], &turned);
-    for rope in beyond(&all, state, &turned, none) {
-        constraints::set_taut(&mut all, rope.number, true);
-    }
+    constraints::loosen(&mut all, halves(network, y)[0], &turned);
     network.constraints = all;
     let mut evaluated = 0;
     while taut(network).next().is_some() {

@@ -7,8 +7,8 @@ use super::state::RunState;
 use super::step::Pipeline;
 use crate::integrators::Work;
 use crate::network::{
-    Jump, Least, Network, entered, fit, has_ropes, jump_near, next_release, pass_to, settle, taut,
-    tighten,
+    Jump, Least, Network, entered, fit, has_ropes, jump_near, next_release, pass_to, settle,
+    slacken, taut, tighten,
 };
 use crate::scene::Model;
 
@@ -113,14 +113,25 @@ impl Pipeline {
         }
     }
 
-    /// Decides which ropes are taut from time t (s) on.
-    pub(super) fn choose_taut(&mut self, model: &mut Model, state: &mut RunState, t: f64) {
+    /// Decides which ropes are taut from time t (s) on; just after an impact, which of them still
+    /// are.
+    pub(super) fn choose_taut(
+        &mut self,
+        model: &mut Model,
+        state: &mut RunState,
+        t: f64,
+        is_after_impact: bool,
+    ) {
         let Model::Network(network) = model else {
             return;
         };
         let before: Vec<_> = taut(network).collect();
         let none = Depths::new(self.bounds.radius, self.limits, state.control).none;
-        state.work += Work::of(settle(network, t, &state.y, none));
+        state.work += Work::of(if is_after_impact {
+            slacken(network, t, &state.y)
+        } else {
+            settle(network, t, &state.y, none)
+        });
         if !taut(network).eq(before) {
             self.stepper.forget();
         }

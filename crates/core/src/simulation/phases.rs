@@ -7,14 +7,16 @@ use std::cell::Cell;
 
 use super::depths::Depths;
 use crate::columns::row;
-use crate::constraints::Constraint;
+use crate::constraints::{Constraint, Pushed};
 use crate::contact::{
     Bodies, ContactPhase, Course, Impulses, Joints, Pinched, Statistics, Step, StrainLimiter,
     Strained, bulge, earliest, guard, resolve,
 };
 use crate::error::Cause;
 use crate::interval::Interval;
-use crate::network::{Network, has_ropes, is_held, outflows, pass_on, project, project_velocities};
+use crate::network::{
+    Network, add, has_ropes, is_held, outflows, pass_on, project, project_velocities, pulls,
+};
 use crate::rigid::ROTATION;
 use crate::scene::Model;
 use crate::system::{Mechanics, ParticleSystem};
@@ -368,6 +370,14 @@ impl Joints for JointsOf<'_> {
 
     fn fit(&self, y: &mut [f64]) {
         pass_on(self.network, y);
+    }
+
+    fn pulls(&self, y: &[f64]) -> Vec<Vec<Pushed>> {
+        pulls(self.network, y)
+    }
+
+    fn push(&self, effects: &[Pushed], y: &mut [f64]) {
+        add(self.network, effects, y);
     }
 
     fn note(&self, impulse: f64, work: f64) {

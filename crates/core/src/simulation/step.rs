@@ -124,7 +124,7 @@ impl Pipeline {
                 network.list_strained();
             }
             self.tighten(model, state, begin, rebounds);
-            self.choose_taut(model, state, begin);
+            self.choose_taut(model, state, begin, false);
             self.watch.begin_step(model, begin, &state.y);
             let splits = [number < MAX_PARTS, divides];
             let span = (begin, target.filter(|_| in_parts));
@@ -135,6 +135,9 @@ impl Pipeline {
                     if !in_parts {
                         // Where the next step begins: t + h may differ in the last place.
                         part.end = target.unwrap_or(part.end);
+                    }
+                    if settled.met.impulse.max(settled.met.guarded.impulse) > 0.0 {
+                        self.choose_taut(model, state, part.end, true);
                     }
                     let cause = self.end_part(model, state, part.end, &settled);
                     self.tighten(model, state, part.end, rebounds);

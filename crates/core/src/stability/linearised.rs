@@ -299,7 +299,8 @@ pub(super) struct Jacobian {
 
 impl Jacobian {
     /// Creates the Jacobian at the state y at time t (s): the system's own, or central differences.
-    /// `None` if the state is too long, the system has a mass matrix, or the Jacobian is not finite.
+    /// `None` if the state is too long, the system has a mass matrix, or the Jacobian is not
+    /// finite.
     pub fn of(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Option<Self> {
         let carried = |k: &usize| rigid_of(system).is_some_and(|rigid| rigid.is_carried(*k));
         let unknowns: Vec<usize> = (0..y.len()).filter(|k| !carried(k)).collect();

@@ -18,8 +18,8 @@ const STIFF_RATIO: f64 = 8.0;
 const MOST: f64 = 1e6;
 
 /// Returns whether Radau reaches a time (s) with less than an eighth of the work of DOP853, and the
-/// work of both. No system is stiff that Radau does not support, and one with a mass matrix is, which
-/// no explicit method supports. `None` if `go_on` returned false.
+/// work of both. No system is stiff that Radau does not support, and one with a mass matrix is,
+/// which no explicit method supports. `None` if `go_on` returned false.
 ///
 /// # Errors
 /// A function of the system failed, or a system of one's own takes more than a million evaluations.

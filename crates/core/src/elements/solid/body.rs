@@ -101,8 +101,9 @@ impl Solid {
         })
     }
 
-    /// Returns the stress (Pa) in each tetrahedron at positions x (m) and velocities v (m/s), as the
-    /// deformed body has it, after Cauchy: P F^T / det F, with the first Piola-Kirchhoff stress P.
+    /// Returns the stress (Pa) in each tetrahedron at positions x (m) and velocities v (m/s), as
+    /// the deformed body has it, after Cauchy: P F^T / det F, with the first Piola-Kirchhoff stress
+    /// P.
     pub fn stresses(&self, x: &[f64], v: &[f64]) -> impl Iterator<Item = Matrix3<f64>> {
         self.deformed(x).zip(self.deformed(v)).map(|(body, rate)| {
             let rate = (self.material.damping > 0.0).then_some(&rate.deformation);

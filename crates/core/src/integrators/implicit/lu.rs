@@ -80,8 +80,8 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
         self.costs[1]
     }
 
-    /// Factorises `shift` M - `scale` J, for the entries of M, which is 1 if there are none. Returns
-    /// false if it is singular or not finite.
+    /// Factorises `shift` M - `scale` J, for the entries of M, which is 1 if there are none.
+    /// Returns false if it is singular or not finite.
     pub fn factorise(
         &mut self,
         (shift, mass): (T, &[(u32, u32, f64)]),

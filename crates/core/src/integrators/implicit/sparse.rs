@@ -69,9 +69,9 @@ impl<T: ComplexField<RealField = f64> + Copy> Sparse<T> {
         self.lower.entries.len() + self.upper.entries.len() + self.reciprocals.len()
     }
 
-    /// Factorises `shift` M - `scale` J, for the entries of M, column by column, or 1, and the values
-    /// of J at the entries of a pattern. Returns the number of products; `None` if the matrix is
-    /// singular or not finite.
+    /// Factorises `shift` M - `scale` J, for the entries of M, column by column, or 1, and the
+    /// values of J at the entries of a pattern. Returns the number of products; `None` if the
+    /// matrix is singular or not finite.
     pub fn factorise(
         &mut self,
         (shift, mass): (T, &[(u32, u32, f64)]),
