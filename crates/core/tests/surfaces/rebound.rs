@@ -210,6 +210,41 @@ fn balls_meet_as_the_closed_form_says() {
     }
 }
 
+/// Faces that meet without restitution stay together, at any speed: the repulsion gives nothing
+/// back.
+#[test]
+fn boxes_without_restitution_stay_together() {
+    for (name, control) in [
+        ("rk4", Control::Step(1e-3)),
+        ("verlet", Control::Step(1e-3)),
+        ("implicit-euler", Control::Step(3e-3)),
+        ("dopri5", Control::Tolerance(1e-6)),
+    ] {
+        for speed in [0.002, 0.02, 0.3, 2.0] {
+            let text = format!(
+                "gravity = [0, 0, 0]
+                contact_gravity = 9.81
+                [[body]]
+                parts = [{{ box = [0.2, 0.2, 0.2] }}]
+                mass = 1
+                velocity = [{speed}, 0, 0]
+                [[body]]
+                parts = [{{ box = [0.2, 0.2, 0.2] }}]
+                mass = 3
+                at = [0.21, 0, 0]"
+            );
+            let mut run = run(&text, name, control);
+            run.advance_to(0.02 / speed + 0.3).unwrap();
+            let found = [0, 1].map(|k| moving(&run, k).v);
+            for v in found {
+                let off = (v - Vector3::x() * (0.25 * speed)).norm();
+                assert!(off < 2e-3 * speed, "{name}, {speed} m/s: {found:?}");
+            }
+            assert_eq!(run.gained(), None, "{name}, {speed} m/s");
+        }
+    }
+}
+
 /// A ball that hits a rod near its end: the rod turns away.
 #[test]
 fn a_rod_hit_at_its_end_turns() {

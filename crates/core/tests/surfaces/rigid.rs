@@ -197,13 +197,11 @@ fn conserved(run: &Simulation) -> (Vector3<f64>, Vector3<f64>, f64) {
 
 #[test]
 fn bodies_that_collide_keep_their_momenta() {
-    // Slow bodies in short steps, which the force keeps apart, and fast ones, which impulses keep
-    // apart.
-    for (method, step, speeds, friction, impulses) in [
-        ("rk4", 1e-3, [0.2, 0.1], 0.0, false),
-        ("verlet", 5e-4, [0.2, 0.1], 0.0, false),
-        ("rk4", 1e-3, [0.2, 0.1], 0.4, false),
-        ("rk4", 1e-3, [3.0, 2.0], 0.4, true),
+    for (method, step, speeds, friction) in [
+        ("rk4", 1e-3, [0.2, 0.1], 0.0),
+        ("verlet", 5e-4, [0.2, 0.1], 0.0),
+        ("rk4", 1e-3, [0.2, 0.1], 0.4),
+        ("rk4", 1e-3, [3.0, 2.0], 0.4),
     ] {
         let mut run = run(&meeting(speeds, friction), method, Control::Step(step));
         let (p0, l0, e0) = conserved(&run);
@@ -213,7 +211,6 @@ fn bodies_that_collide_keep_their_momenta() {
         let what = format!("{method} {step} {friction}");
         assert!((p1 - p0).norm() < 1e-12 * size, "{what}: {p0} {p1}");
         assert!(e1 < 0.95 * e0, "{what}: nothing met: {e0} {e1}");
-        assert_eq!(run.guarded().impulses > 0, impulses, "{:?}", run.guarded());
         // Friction and impulses act on either side at its own surface, across the gap.
         let most = if friction > 0.0 { 2e-2 } else { 1e-6 };
         let off = (l1 - l0).norm() / l0.norm();

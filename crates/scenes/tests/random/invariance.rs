@@ -32,6 +32,7 @@ const FARTHEST: f64 = 1e5;
 #[rustfmt::skip]
 const LEFT_OUT: &[(&str, &[&str], &str)] = &[
     ("dominoes", &["mirrored"], ORDER),
+    ("doll", &["reversed"], ORDER),
     ("stack", &["turned by half", "mirrored", "reversed"], ORDER),
     ("tangled", &["reversed"], "surfaces come apart in the order of the bodies"),
     ("turning", &["turned by half"], "impacts depend on the order of the sides of a box"),

@@ -1,8 +1,6 @@
 //! The stress in solids, for `ParaView`.
 
-use std::fs;
-
-use crate::common::{a3, text};
+use crate::common::{Folder, succeed};
 use a3_core::Vector3;
 
 const BAR: &str = r#"
@@ -37,12 +35,11 @@ fn rows<const N: usize>(file: &str, after: &str) -> Vec<[f64; N]> {
 /// weights about the wall: the virial theorem. In the middle of it, half of the weight hangs.
 #[test]
 fn a_hanging_bar_has_the_stress_of_its_weight() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("bar.toml"), BAR).unwrap();
+    let folder = &Folder::new();
+    folder.write("bar.toml", BAR);
     let run = "simulate i 0.02 --scene bar.toml --until 8 --output bar.vtu";
-    let output = a3(folder.path(), &run.split(' ').collect::<Vec<_>>());
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let file = fs::read_to_string(folder.path().join("bar.vtu")).unwrap();
+    succeed(folder, run);
+    let file = folder.read("bar.vtu");
     let points: Vec<Vector3<f64>> = (rows(&file, "<Points>").into_iter())
         .map(Vector3::from)
         .collect();

@@ -236,3 +236,150 @@ fn a_rope_on_a_floor_keeps_its_restitution() {
         }
     }
 }
+
+/// Velocities (m/s) of particles or bodies at a time (s).
+fn speeds<const N: usize>(run: &Simulation, centers: [usize; N]) -> [Vector3<f64>; N] {
+    let (n, v) = (run.particles(), run.velocities());
+    centers.map(|i| vector(v[i], v[n + i], v[2 * n + i]))
+}
+
+/// Two weights on a taut rope at an angle from the vertical fall on a floor: the lower one
+/// rebounds, and the upper one, which no rope can push, does not notice.
+#[test]
+fn a_taut_rope_pushes_nothing() {
+    for (angle, friction, gravity) in [
+        (0.0_f64, 0.0, 0.0),
+        (0.0, 0.0, G),
+        (0.7, 0.0, 0.0),
+        (0.7, 0.5, 0.0),
+        (1.4, 0.5, 0.0),
+    ] {
+        for is_body in [false, true] {
+            let low = if is_body { 0.35 } else { 0.3 };
+            let [x, y] = [angle.sin(), low + angle.cos()];
+            let weights = if is_body {
+                let ball = |at: [f64; 2], mass: f64| {
+                    format!(
+                        "[[body]]
+                        parts = [{{ ball = 0.05 }}]
+                        mass = {mass}
+                        at = [{}, {}, 0]
+                        velocity = [0.2, -3, 0]
+                        restitution = 1
+                        friction = {friction}",
+                        at[0], at[1]
+                    )
+                };
+                format!("{}\n{}", ball([x, y], 2.0), ball([0.0, low], 1.0))
+            } else {
+                format!(
+                    "[particles]
+                    positions = [[{x}, {y}, 0], [0, {low}, 0]]
+                    velocities = [[0.2, -3, 0], [0.2, -3, 0]]
+                    masses = [2, 1]"
+                )
+            };
+            let ends: [usize; 2] = if is_body { [0, 2] } else { [0, 1] };
+            let scene = format!(
+                "gravity = [0, -{gravity}, 0]
+                contact_gravity = {G}
+                floor = {{ height = 0, restitution = 1, friction = {friction} }}
+                {weights}
+                [[constraint]]
+                rope = {ends:?}
+                length = 1"
+            );
+            let fixed = [2e-3, 1e-3, 5e-4].map(|step| ("rk4", Control::Step(step)));
+            let adaptive = [1e-3, 1e-6].map(|tolerance| ("dopri5", Control::Tolerance(tolerance)));
+            for (name, control) in fixed.into_iter().chain(adaptive) {
+                let run = run(&scene, (name, control), 0.12);
+                let [high, low] = speeds(&run, ends);
+                let rise = (3.0_f64 * 3.0 + 2.0 * gravity * 0.3).sqrt();
+                let down = vector(0.0, -gravity * 0.12, 0.0);
+                let up = vector(0.0, 2.0 * rise, 0.0) + down;
+                let fallen = vector(0.2, -3.0, 0.0);
+                let what = format!("{angle} rad, friction {friction}, body {is_body}, {control:?}");
+                assert!((high - fallen - down).norm() < 2e-3, "{what}: {high}");
+                // Friction stops the slip of a particle, and turns a ball.
+                let slid = if friction == 0.0 {
+                    0.2
+                } else if is_body {
+                    0.2 * 5.0 / 7.0
+                } else {
+                    0.0
+                };
+                let expected = vector(slid, -3.0, 0.0) + up;
+                assert!((low - expected).norm() < 5e-3, "{what}: {low}");
+            }
+        }
+    }
+}
+
+/// A weight on a taut rope from a pin, with another one on a rod at it, which strikes a rough
+/// floor after 1 ms: the impulses of floor, friction, rod and rope solve a problem of
+/// complementarity, whose solution was found by enumeration of what slips, sticks and pulls.
+#[test]
+fn rope_rod_and_friction_are_struck_together() {
+    let scene = "gravity = [0, 0, 0]
+        floor = { height = 0.6620118498440949, restitution = 1, friction = 0.5 }
+        [particles]
+        positions = [[0, 1, 0], [1, 1, 0], [0.057777659331341935, 0.6650118498440949, 0]]
+        velocities = [[0, 0, 0], [0, -3, 0], [0, -3, 0]]
+        masses = [1, 1, 1.5]
+        pin = [{ particles = [0] }]
+        [[constraint]]
+        rope = [0, 1]
+        length = 1
+        [[constraint]]
+        rod = [1, 2]";
+    let fixed = ["rk4", "verlet"].map(|name| (name, Control::Step(1e-4)));
+    for method in fixed
+        .into_iter()
+        .chain([("dopri5", Control::Tolerance(1e-8))])
+    {
+        let run = run(scene, method, 0.0011);
+        let found = speeds(&run, [1, 2]);
+        let expected = [vector(-0.0008, -0.2745, 0.0), vector(-1.1659, 3.0024, 0.0)];
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert!((found - expected).norm() < 1e-3, "{}: {found}", method.0);
+        }
+    }
+}
+
+/// Two boxes on a slider at its limit, where no force holds them, fall on a floor: at the lower
+/// limit both rebound as one, at the upper one they part.
+#[test]
+fn the_limit_of_a_slider_passes_impulses_one_way() {
+    for (limits, after) in [("[0, 0.5]", [3.0, 3.0]), ("[-0.5, 0]", [3.0, -3.0])] {
+        let scene = format!(
+            "gravity = [0, 0, 0]
+            contact_gravity = {G}
+            floor = {{ height = 0, restitution = 1 }}
+            [[body]]
+            parts = [{{ box = [0.1, 0.1, 0.1] }}]
+            mass = 1
+            at = [0, 0.35, 0]
+            velocity = [0, -3, 0]
+            [[body]]
+            parts = [{{ box = [0.1, 0.1, 0.1] }}]
+            mass = 2
+            at = [0, 1.35, 0]
+            velocity = [0, -3, 0]
+            [[joint]]
+            bodies = [0, 1]
+            slider = {{ axis = [0, 1, 0], limits = {limits} }}"
+        );
+        let fixed = [2e-3, 1e-3, 5e-4, 1e-4].map(|step| ("rk4", Control::Step(step)));
+        let adaptive = [1e-3, 1e-6].map(|tolerance| ("dopri5", Control::Tolerance(tolerance)));
+        for (name, control) in fixed.into_iter().chain(adaptive) {
+            let run = run(&scene, (name, control), 0.15);
+            let found = speeds(&run, [0, 9]).map(|v| v.y);
+            for (found, after) in found.into_iter().zip(after) {
+                assert!(
+                    (found - after).abs() < 0.01,
+                    "{limits} {control:?}: {found}"
+                );
+            }
+        }
+    }
+}
