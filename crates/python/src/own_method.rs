@@ -83,7 +83,8 @@ pub fn add_method(
 }
 
 /// Registers a method that estimates its errors: `step` returns the state at t + h, the estimate,
-/// and the coefficients of a polynomial of this degree within the step; of degree 0, there are none.
+/// and the coefficients of a polynomial of this degree within the step; of degree 0, there are
+/// none.
 #[pyfunction]
 pub fn add_adaptive(
     py: Python<'_>,
