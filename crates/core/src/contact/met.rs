@@ -432,8 +432,9 @@ impl Met<'_> {
 
 /// Returns the place (m) at which a particle touches the obstacle on its straight way from
 /// `carried`, its place if the obstacle had carried it along, to `at` (m): it approaches by a
-/// distance (m) along the normal, and ends at a depth (m).
+/// distance (m) along the normal, and ends at a depth (m), which rounding may make negative.
 fn touched([carried, at]: [Vector3<f64>; 2], [depth, approach]: [f64; 2]) -> Vector3<f64> {
+    let depth = depth.max(0.0);
     let share = if approach > depth * (1.0 + TOUCHING_SHARE) {
         depth / approach
     } else {

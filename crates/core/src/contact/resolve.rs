@@ -363,7 +363,9 @@ fn pass_on(noted: &mut Noted, inverse_masses: &[f64], y1: &mut [f64]) {
     solve(blows.iter_mut(), &mut ties, &mut changes, moving);
     let mut moves = Field::still(n, 0);
     let left = held.iter().map(|impact| impact.left).fold(0.0, f64::max);
-    ties.iter().for_each(|tie| tie.push(left, &mut moves));
+    for tie in &ties {
+        tie.push(left, &mut moves);
+    }
     for (impact, blow) in held.iter().zip(&blows) {
         blow.contact
             .push(blow.impulse * impact.left, inverse_masses, &mut moves);

@@ -146,6 +146,36 @@ fn friction_stops_a_slide_over_the_triangles_of_a_mesh() {
     }
 }
 
+/// A rod lands on a plate that turns, is carried along by friction, and slides off it.
+#[test]
+fn a_rod_slides_off_a_turning_mesh() {
+    let bar = "v -1 -0.1 -0.5\nv -1 -0.1 0.5\nv -1 0.1 -0.5\nv -1 0.1 0.5
+        v 1 -0.1 -0.5\nv 1 -0.1 0.5\nv 1 0.1 -0.5\nv 1 0.1 0.5
+        f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4";
+    let text = "gravity = [0, -9.81, 0]
+        [[obstacle]]
+        file = \"bar.obj\"
+        at = [0, 0.05, 0]
+        friction = 0.3
+        turn = { axis = [0, 1, 0], rate = 4 }
+        [particles]
+        positions = [[0.1, 0.4, 0], [0.4, 0.45, 0]]
+        mass = 1
+        [[constraint]]
+        rod = [0, 1]";
+    for (name, step) in [("rk4", 1e-3), ("rk4", 5e-4), ("verlet", 1e-3)] {
+        let description = Description::parse(text).unwrap();
+        let mesh = Mesh::from_obj(bar.as_bytes()).unwrap();
+        let setup = description.build(None, &mut |_| Ok(mesh.clone())).unwrap();
+        let control = Control::Step(step);
+        let mut run = Simulation::new(setup.scene, method(name), control).unwrap();
+        run.advance_to(0.8)
+            .unwrap_or_else(|why| panic!("{name}, {step}: {why}"));
+        let length = (run.position(1) - run.position(0)).norm();
+        assert!((length - 0.0925_f64.sqrt()).abs() < 1e-4, "{length}");
+    }
+}
+
 #[test]
 fn a_box_that_stands_on_something_stops_what_slides_along_it() {
     let grounds = [
