@@ -141,7 +141,7 @@ impl Ode {
     /// numbers that the others leave open (index 1); see
     /// [`mass_matrix`](ParticleSystem::mass_matrix).
     ///
-    /// A reaction of which the last equation says that nothing is lost:
+    /// A reaction whose last equation keeps the sum of all substances:
     ///
     /// ```
     /// use a3_core::integrators::{self, Tolerance};

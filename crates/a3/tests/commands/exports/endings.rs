@@ -58,7 +58,7 @@ fn a_run_that_blows_up_leaves_only_the_whole_files_of_a_sequence() {
         assert!(run(output).contains("blew up at step"));
         assert_eq!(folder.count(), 0, "{output}");
     }
-    // Steps for a frame, none of which is shortened.
+    // Whole steps for each frame, none shortened.
     for output in ["x.json", "x.csv", "x.npz", "x.pc2", "x.glb", "x.usda"] {
         let line = run(&format!("{output} --fps 25"));
         assert!(
