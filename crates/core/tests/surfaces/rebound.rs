@@ -215,9 +215,12 @@ fn balls_meet_as_the_closed_form_says() {
 #[test]
 fn boxes_without_restitution_stay_together() {
     for (name, control) in [
-        ("rk4", Control::Step(1e-3)),
-        ("verlet", Control::Step(1e-3)),
+        ("rk4", Control::Step(3e-3)),
+        ("verlet", Control::Step(3e-3)),
         ("implicit-euler", Control::Step(3e-3)),
+        ("dopri5", Control::Tolerance(1e-3)),
+        ("dopri5", Control::Tolerance(1e-6)),
+        ("dop853", Control::Tolerance(1e-6)),
     ] {
         for speed in [0.002, 0.02, 0.3, 2.0] {
             let text = format!(

@@ -1,6 +1,7 @@
 //! Seeds and their mutations: repeatable changes of bytes, words and lines.
 
 use std::fs;
+use std::path::Path;
 
 /// Words that readers have stumbled over.
 #[rustfmt::skip]
@@ -12,11 +13,10 @@ const WORDS: [&str; 31] = [
 
 /// Reads the files of a folder of seeds, in the order of their names.
 pub fn seeds(folder: &str) -> Vec<Vec<u8>> {
-    let folder = format!(
-        "{}/../../../fuzz/seeds/{folder}",
-        env!("CARGO_MANIFEST_DIR")
-    );
-    let files = fs::read_dir(folder)
+    // Packages in folders of any depth include this.
+    let files = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .find_map(|ancestor| fs::read_dir(ancestor.join("fuzz/seeds").join(folder)).ok())
         .unwrap()
         .map(|entry| entry.unwrap().path());
     let mut files: Vec<_> = files.collect();
