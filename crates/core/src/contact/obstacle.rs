@@ -97,21 +97,9 @@ impl Obstacle {
         matches!(self.path, Path::Still(_)) && self.turn.is_none()
     }
 
-    /// Returns whether its reaction is known at each stage: its faces are flat, and it does not
-    /// move.
+    /// Returns whether it has flat faces and does not move.
     pub(crate) fn is_flat(&self) -> bool {
-        let has_faces = matches!(
-            self.shape,
-            Shape::Floor | Shape::Box { .. } | Shape::Mesh(_)
-        );
-        self.is_still() && has_faces
-    }
-
-    /// Returns the height (m) of a point above it, and the normal there, if it does not move.
-    pub(crate) fn height(&self, x: Vector3<f64>) -> (f64, Vector3<f64>) {
-        let pose = self.at(0.0);
-        let seen = self.shape.separation(pose.inwards(x - pose.place.position));
-        (seen.distance, pose.outwards(seen.normal))
+        self.is_still() && self.shape.is_faceted()
     }
 
     /// Returns the height (m) of its highest point over the plane through x (m) with this normal,

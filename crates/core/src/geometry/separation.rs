@@ -21,13 +21,7 @@ impl Shape {
                 ends: [a, b],
                 radius,
             } => {
-                let axis = b - a;
-                let squared = axis.norm_squared();
-                let share = if squared > 0.0 {
-                    ((d - a).dot(&axis) / squared).clamp(0.0, 1.0)
-                } else {
-                    0.0
-                };
+                let (axis, share) = along_axis([*a, *b], d);
                 around(d - (a + axis * share), *radius)
             }
             Self::Mesh(mesh) => mesh.separation(d),
@@ -36,6 +30,33 @@ impl Shape {
                 normal: Vector3::y(),
             },
         }
+    }
+
+    /// Returns whether the surface consists of flat faces.
+    pub(crate) fn is_faceted(&self) -> bool {
+        matches!(self, Self::Floor | Self::Box { .. } | Self::Mesh(_))
+    }
+
+    /// Returns the normal acceleration (m/s2) of a point d that moves along the surface at velocity
+    /// v (m/s), towards the inside.
+    pub(crate) fn curving(&self, d: Vector3<f64>, v: Vector3<f64>) -> f64 {
+        let (from_axis, across) = match self {
+            Self::Sphere { .. } => (d, v),
+            Self::Capsule { ends: [a, b], .. } => {
+                let (axis, share) = along_axis([*a, *b], d);
+                let is_beside = 0.0 < share && share < 1.0;
+                let along = axis.try_normalize(0.0).filter(|_| is_beside);
+                let across = along.map_or(v, |along| v - along * v.dot(&along));
+                (d - (a + axis * share), across)
+            }
+            Self::Floor | Self::Box { .. } | Self::Mesh(_) => return 0.0,
+        };
+        let distance = from_axis.norm();
+        if distance == 0.0 {
+            return 0.0;
+        }
+        let outwards = from_axis.dot(&across) / distance;
+        (across.norm_squared() - outwards * outwards) / distance
     }
 
     /// Returns whether the shape is convex: then the tangent plane at the nearest point is a lower
@@ -70,6 +91,18 @@ impl Shape {
             Self::Floor => f64::INFINITY,
         }
     }
+}
+
+/// Returns a segment as a vector, and the share of it after which it is nearest to d.
+fn along_axis([a, b]: [Vector3<f64>; 2], d: Vector3<f64>) -> (Vector3<f64>, f64) {
+    let axis = b - a;
+    let squared = axis.norm_squared();
+    let share = if squared > 0.0 {
+        ((d - a).dot(&axis) / squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (axis, share)
 }
 
 /// Returns the separation of d from a sphere of that radius (m) around the origin.

@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 
 use super::depths::Depths;
 use super::phases::{first_beyond, first_longer};
+use super::resting::Rest;
 use crate::columns::row;
 use crate::contact::{Approach, Course, Obstacle};
 use crate::elements::Fluid;
@@ -77,10 +78,13 @@ impl Events {
         }
     }
 
-    /// Finds the first event of a step, and the state there.
-    pub fn first(&mut self, step: &Searched, state_at: StateAt) -> Option<Event> {
+    /// Finds the first event of a step in which some particles rest, and the state there.
+    pub fn first(&mut self, step: &Searched, rests: &[Rest], state_at: StateAt) -> Option<Event> {
         self.list_pairs(step);
         self.leave_out_level(step);
+        // What rests stays at the surface.
+        self.pairs
+            .retain(|pair| !Rest::is_listed(rests, pair.particle, pair.body));
         self.list_springs(step);
         if self.pairs.is_empty() && self.springs.is_empty() {
             return None;
@@ -235,7 +239,11 @@ impl Events {
         faces.extend(lying.filter_map(|pair| {
             let obstacle = Some(step.body(pair.body)).filter(|obstacle| obstacle.is_flat())?;
             let x = row(step.ends[0], n, pair.particle);
-            Some((pair.particle, x, obstacle.height(x).1))
+            let pose = obstacle.at(0.0);
+            let seen = obstacle
+                .shape
+                .separation(pose.inwards(x - pose.place.position));
+            Some((pair.particle, x, pose.outwards(seen.normal)))
         }));
         if faces.len() == pairs.len() {
             return;

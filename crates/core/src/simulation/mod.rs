@@ -9,6 +9,7 @@ mod driver;
 mod events;
 mod hand;
 mod interaction;
+mod locator;
 mod phases;
 mod pins;
 mod power;

@@ -1,30 +1,24 @@
-//! Particles that rest or slide on flat obstacles during a step, and the first event that ends it.
+//! Particles that rest or slide on obstacles during a step.
 //!
 //! If contact acts only after each step, a particle falls freely within the step: it sinks into the
 //! obstacle by half the acceleration times the square of the step, however small the tolerance.
 //! Therefore, in steps that locate events, the obstacle's reaction and its friction are forces at
-//! every stage. A particle that sticks does not move. One that slides has no acceleration along the
-//! normal, and friction against its velocity. This holds for a whole step, which ends where it
-//! ceases to hold: where the obstacle would have to pull, where friction cannot hold a particle
-//! that sticks, where friction ends a slide, and at the edge of a face.
+//! every stage. A particle that sticks moves with the obstacle. One that slides follows its
+//! surface, with friction against its velocity relative to the obstacle. This holds for a whole
+//! step, which ends where it ceases to hold: where the obstacle would have to pull, where friction
+//! cannot hold a particle that sticks, where friction ends a slide, and at the edge of a face.
 
 use std::ops::Range;
 
 use nalgebra::Vector3;
 
 use super::depths::Depths;
-use super::events::{Event, EventKind, Events, Searched};
-use super::state::RunState;
-use super::stepper::Stepper;
+use super::events::{Event, EventKind};
 use crate::columns::{row, set_row};
-use crate::constraints::OneSided;
-use crate::contact::{Obstacle, Shape};
-use crate::elements::Outflow;
-use crate::integrators::Work;
-use crate::interval::Interval;
+use crate::contact::Obstacle;
 use crate::measure::Measure;
-use crate::network::{Network, has_ropes, least_tension, open_ends, outflows, taut};
-use crate::path::Path;
+use crate::network::Network;
+use crate::path::Place;
 use crate::scene::Model;
 use crate::system::ParticleSystem;
 
@@ -43,10 +37,85 @@ const ROUNDING: f64 = 1e-10;
 pub(super) struct Rest {
     particle: usize,
     obstacle: usize,
-    /// Normal of the obstacle.
-    normal: Vector3<f64>,
+    /// The face on which it lies, if the obstacle has faces.
+    face: Option<Face>,
     /// `None` if the particle sticks.
     slide: Option<Slide>,
+}
+
+impl Rest {
+    /// Returns whether a particle rests on an obstacle, given by their numbers.
+    pub fn is_listed(rests: &[Self], particle: usize, obstacle: usize) -> bool {
+        let key = |rest: &Self| (rest.obstacle, rest.particle);
+        rests
+            .binary_search_by_key(&(obstacle, particle), key)
+            .is_ok()
+    }
+}
+
+/// Face of an obstacle, in the obstacle's own frame.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    /// Point of it (m).
+    point: Vector3<f64>,
+    normal: Vector3<f64>,
+}
+
+/// Obstacle at one time, as a particle that touches it sees it.
+struct Seen {
+    /// Height (m) of the particle above the surface, or above the plane of its face.
+    height: f64,
+    normal: Vector3<f64>,
+    /// Point of the obstacle at the particle.
+    place: Place,
+    /// Velocity (m/s) of the particle relative to that point.
+    speed: Vector3<f64>,
+    /// Angular velocity of the obstacle (rad/s).
+    spin: Vector3<f64>,
+    /// Normal acceleration (m/s2), inwards, of a particle that follows the surface at that
+    /// velocity.
+    curving: f64,
+}
+
+impl Seen {
+    /// Returns an obstacle at time t (s), as a particle at x (m) with the velocity v (m/s) sees it.
+    fn new((obstacle, face): (&Obstacle, Option<Face>), t: f64, [x, v]: [Vector3<f64>; 2]) -> Self {
+        let pose = obstacle.at(t);
+        let inner = pose.inwards(x - pose.place.position);
+        let place = pose.of(inner);
+        let (height, normal) = match face {
+            Some(Face { point, normal }) => ((inner - point).dot(&normal), normal),
+            None => {
+                let seen = obstacle.shape.separation(inner);
+                (seen.distance, seen.normal)
+            }
+        };
+        let speed = v - place.velocity;
+        Self {
+            height,
+            normal: pose.outwards(normal),
+            place,
+            speed,
+            spin: pose.orientation.map_or(Vector3::zeros(), |it| it.spin),
+            curving: obstacle.shape.curving(inner, pose.inwards(speed)),
+        }
+    }
+
+    /// Returns the part of the velocity along the surface (m/s).
+    fn slide(&self) -> Vector3<f64> {
+        self.speed - self.normal * self.speed.dot(&self.normal)
+    }
+
+    /// Returns an acceleration (m/s2) relative to the obstacle.
+    fn relative(&self, acceleration: Vector3<f64>) -> Vector3<f64> {
+        acceleration - self.place.acceleration - self.spin.cross(&self.speed) * 2.0
+    }
+
+    /// Returns the acceleration (m/s2) by which the obstacle pushes, where without it the
+    /// acceleration relative to it is `free`.
+    fn press(&self, free: Vector3<f64>) -> f64 {
+        -free.dot(&self.normal) - self.curving
+    }
 }
 
 /// Slide of a particle over an obstacle.
@@ -72,9 +141,9 @@ impl Slide {
     }
 }
 
-/// Particles that rest in a step.
+/// Particles that rest in a step, in the order of their obstacles.
 #[derive(Clone, Debug, Default)]
-struct Rests {
+pub(super) struct Rests {
     now: Vec<Rest>,
     scratch: Scratch,
 }
@@ -97,7 +166,7 @@ pub(super) struct Resting<'a> {
 /// Returns whether particles of a network may rest in this sense. In a network with constraints,
 /// bodies or surfaces, their forces would have to be solved together with the reactions.
 pub(crate) fn may_rest(network: &Network) -> bool {
-    network.solids().iter().any(Obstacle::is_flat)
+    !network.solids().is_empty()
         && network.contact_layer().is_none()
         && network.bodies().is_empty()
         && !network.is_constrained()
@@ -109,8 +178,7 @@ impl Rests {
         let Some(network) = model.network().filter(|network| may_rest(network)) else {
             return Self::default();
         };
-        let flat = network.solids().iter().filter(|o| o.is_flat()).count();
-        let most = flat * network.particles();
+        let most = network.solids().len() * network.particles();
         Self {
             now: Vec::with_capacity(most),
             scratch: Scratch {
@@ -135,22 +203,25 @@ impl Rests {
         self.now.clear();
     }
 
-    /// Adds the particles that press on a flat obstacle and do not leave it in the state y at time
-    /// t (s): all further rebounds of them are left out. Velocities are set to 0 where a slide
-    /// counts as stopped. Returns the number of evaluations.
+    /// Adds the particles that press on an obstacle and do not leave it in the state y at time t
+    /// (s): all further rebounds of them are left out. Velocities are set to those of the obstacle
+    /// where a slide counts as stopped. Returns the number of evaluations.
     pub fn list(&mut self, network: &Network, t: f64, y: &mut [f64], depths: Depths) -> u64 {
         let n = network.particles();
         for (k, obstacle) in network.solids().iter().enumerate() {
-            if !obstacle.is_flat() {
-                continue;
-            }
+            let pose = obstacle.at(t);
             for particle in (0..n).filter(|i| !network.is_pinned(*i)) {
-                let (distance, normal) = obstacle.height(row(y, n, particle));
-                if distance.abs() <= depths.none {
+                let inner = pose.inwards(row(y, n, particle) - pose.place.position);
+                let seen = obstacle.shape.separation(inner);
+                if seen.distance.abs() <= depths.none {
+                    let face = Face {
+                        point: inner - seen.normal * seen.distance,
+                        normal: seen.normal,
+                    };
                     self.now.push(Rest {
                         particle,
                         obstacle: k,
-                        normal,
+                        face: Some(face).filter(|_| obstacle.shape.is_faceted()),
                         slide: None,
                     });
                 }
@@ -163,35 +234,54 @@ impl Rests {
         free.resize(network.dim(), 0.0);
         network.eval_f(t, y, free);
         let a = &free[3 * n..6 * n];
-        let (x, v) = y.split_at_mut(3 * n);
-        let v = &mut v[..3 * n];
         self.now.retain_mut(|rest| {
-            let (free, speed) = (row(a, n, rest.particle), row(v, n, rest.particle));
-            let press = -free.dot(&rest.normal);
-            let obstacle = &network.solids()[rest.obstacle];
+            let (obstacle, i) = (&network.solids()[rest.obstacle], rest.particle);
+            let seen = rest.seen(network, t, y);
+            let free = seen.relative(row(a, n, i));
+            let press = seen.press(free);
             let most = obstacle.friction * press;
-            let leaving = speed.dot(&rest.normal);
-            let place = row(x, n, rest.particle);
-            let begun = obstacle.height(place).0.max(0.0);
+            let leaving = seen.speed.dot(&seen.normal);
+            let begun = seen.height.max(0.0);
             let highest = begun + 0.5 * leaving * leaving / press;
-            if press <= 0.0 || highest > depths.left_out(obstacle.restitution, place) {
+            let left_out = depths.left_out(obstacle.restitution, row(y, n, i));
+            if press <= 0.0 || highest > left_out {
                 return false;
             }
-            let slide = speed - rest.normal * leaving;
-            let across = free + rest.normal * press;
+            let slide = seen.slide();
+            let across = free - seen.normal * free.dot(&seen.normal);
             let slack = (depths.still() * most).sqrt();
-            if slide.norm() > slack {
+            let kept = if slide.norm() > slack {
                 rest.slide = Slide::of(slide, slide.norm(), 0.0);
-                set_row(v, n, rest.particle, slide);
+                slide
             } else if across.norm() > most {
                 rest.slide = Slide::of(across, slack, slack);
-                set_row(v, n, rest.particle, slide);
+                slide
             } else {
-                set_row(v, n, rest.particle, Vector3::zeros());
-            }
+                Vector3::zeros()
+            };
+            set_row(&mut y[3 * n..6 * n], n, i, seen.place.velocity + kept);
             true
         });
         1
+    }
+
+    /// Returns the sum of the magnitudes of the impulses (N s) of moving obstacles on the particles
+    /// that rest on them in a step of h (s), by the reactions in the state y at its end, at time t
+    /// (s), and the number of evaluations.
+    pub fn impulse(&mut self, network: &Network, (t, h): (f64, f64), y: &[f64]) -> (f64, u64) {
+        let Self { now, scratch } = self;
+        let moves = |rest: &&Rest| !network.solids()[rest.obstacle].is_still();
+        if !now.iter().any(|rest| moves(&rest)) {
+            return (0.0, 0);
+        }
+        let n = network.particles();
+        network.eval_f(t, y, &mut scratch.free);
+        let impulse = |rest: &Rest| {
+            let free = row(&scratch.free[3 * n..6 * n], n, rest.particle);
+            let reaction = rest.held(network, t, y, free) - free;
+            network.masses()[rest.particle] * reaction.norm() * h
+        };
+        (now.iter().filter(moves).map(impulse).sum(), 1)
     }
 
     /// Returns a hash of which particles rest on which obstacles, and which of them slide: 0 if
@@ -236,14 +326,14 @@ pub(super) fn first_end(
         network.eval_f(t + share * h, found, free);
         let margins = rests
             .iter()
-            .map(|rest| rest.margin(network, found, free, none));
+            .map(|rest| rest.margin(network, (t + share * h, none), found, free));
         margins.fold(f64::INFINITY, f64::min)
     };
     let share = first_negative(before, |share| margin(share, found))?;
     margin(share, found);
     state.clone_from(found);
     for rest in rests {
-        rest.stop(network, state);
+        rest.stop(network, t + share * h, state);
     }
     Some(Event {
         share,
@@ -253,13 +343,16 @@ pub(super) fn first_end(
 
 /// Returns a share of the step, up to `before`, just after which a margin becomes negative; `None`
 /// if it is not negative there. If it is from the beginning, the result is `before`.
-fn first_negative(before: f64, mut margin: impl FnMut(f64) -> f64) -> Option<f64> {
+pub(super) fn first_negative(before: f64, mut margin: impl FnMut(f64) -> f64) -> Option<f64> {
     let mut high = (before, margin(before));
     if high.1 >= 0.0 {
         return None;
     }
     let mut low = (0.0, margin(0.0));
-    while low.1 > 0.0 && high.0 - low.0 > MIN_INTERVAL {
+    if low.1 <= 0.0 {
+        return Some(before);
+    }
+    while high.0 - low.0 > MIN_INTERVAL {
         // The secant's step, at some distance from the ends.
         let secant = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
         let edge = 0.01 * (high.0 - low.0);
@@ -271,41 +364,45 @@ fn first_negative(before: f64, mut margin: impl FnMut(f64) -> f64) -> Option<f64
 }
 
 impl Rest {
-    /// Returns the part of a particle's velocity along the obstacle (m/s).
-    fn slide(&self, network: &Network, y: &[f64]) -> Vector3<f64> {
-        let v = row(network.halves(y).1, network.particles(), self.particle);
-        v - self.normal * v.dot(&self.normal)
+    /// Returns the obstacle in the state y at time t (s), as the particle sees it.
+    fn seen(&self, network: &Network, t: f64, y: &[f64]) -> Seen {
+        let (n, i) = (network.particles(), self.particle);
+        let [x, v] = [y, &y[3 * n..]].map(|half| row(half, n, i));
+        let obstacle = &network.solids()[self.obstacle];
+        Seen::new((obstacle, self.face), t, [x, v])
     }
 
-    /// Returns the margin by which the contact continues unchanged in the state y with the
-    /// derivative `free` without reactions, over the force or speed that it depends on: negative
-    /// where it ceases.
-    fn margin(&self, network: &Network, y: &[f64], free: &[f64], none: f64) -> f64 {
+    /// Returns the margin by which the contact continues unchanged in the state y at time t (s)
+    /// with the derivative `free` without reactions, over the force or speed that it depends on:
+    /// negative where it ceases. Heights up to `none` (m) count as zero.
+    fn margin(&self, network: &Network, (t, none): (f64, f64), y: &[f64], free: &[f64]) -> f64 {
         let (n, i) = (network.particles(), self.particle);
         let obstacle = &network.solids()[self.obstacle];
-        if obstacle.height(row(y, n, i)).0.abs() > none {
+        if obstacle.depth(t, row(y, n, i)).abs() > none {
             return -1.0;
         }
+        let seen = self.seen(network, t, y);
         let free = row(&free[3 * n..6 * n], n, i);
-        let press = -free.dot(&self.normal);
+        let (size, free) = (free.norm(), seen.relative(free));
+        let press = seen.press(free);
         let most = obstacle.friction * press;
         let other = match self.slide {
-            None => most - (free + self.normal * press).norm(),
+            None => most - (free - seen.normal * free.dot(&seen.normal)).norm(),
             Some(slide) if slide.speed > 0.0 => {
-                let speed = self.slide(network, y).dot(&slide.along) + slide.slack;
-                return (press / free.norm() + ROUNDING).min(speed / slide.speed);
+                let speed = seen.slide().dot(&slide.along) + slide.slack;
+                return (press / size + ROUNDING).min(speed / slide.speed);
             }
             Some(_) => press,
         };
-        press.min(other) / free.norm() + ROUNDING
+        press.min(other) / size + ROUNDING
     }
 
-    /// Stops a slide that friction has ended, rather than only turned.
-    fn stop(&self, network: &Network, y: &mut [f64]) {
+    /// Stops a slide at time t (s) that friction has ended, rather than only turned.
+    fn stop(&self, network: &Network, t: f64, y: &mut [f64]) {
         let Some(Slide { along, speed, .. }) = self.slide else {
             return;
         };
-        let slide = self.slide(network, y);
+        let slide = self.seen(network, t, y).slide();
         if slide.dot(&along) <= 0.0 && slide.norm() <= MAX_TURNING_SPEED * speed {
             let (n, i) = (network.particles(), self.particle);
             let v = &mut y[3 * n..6 * n];
@@ -314,22 +411,34 @@ impl Rest {
         }
     }
 
-    /// Returns the acceleration (m/s2) with the obstacle's reaction and friction at a velocity
-    /// (m/s), from the acceleration without them.
-    fn held(&self, obstacle: &Obstacle, v: Vector3<f64>, free: Vector3<f64>) -> Vector3<f64> {
+    /// Puts the particle onto the surface in the state y at time t (s), with no velocity across.
+    fn hold(&self, network: &Network, t: f64, y: &mut [f64]) {
+        let (n, i) = (network.particles(), self.particle);
+        let seen = self.seen(network, t, y);
+        let leaving = seen.speed.dot(&seen.normal);
+        let (x, v) = y.split_at_mut(3 * n);
+        for (column, excess) in [(x, seen.height), (&mut v[..3 * n], leaving)] {
+            let held = row(column, n, i) - seen.normal * excess;
+            set_row(column, n, i, held);
+        }
+    }
+
+    /// Returns the acceleration (m/s2) with the obstacle's reaction and friction in the state y at
+    /// time t (s), from the acceleration without them.
+    fn held(&self, network: &Network, t: f64, y: &[f64], free: Vector3<f64>) -> Vector3<f64> {
+        let seen = self.seen(network, t, y);
         let Some(Slide { along, .. }) = self.slide else {
-            return Vector3::zeros();
+            return seen.place.acceleration;
         };
-        let press = -free.dot(&self.normal);
-        let slide = v - self.normal * v.dot(&self.normal);
         // Past its turning point the slide continues as if friction did not turn: the step ends at
         // that point, and its polynomial stays smooth.
-        let direction = match slide.try_normalize(0.0) {
+        let direction = match seen.slide().try_normalize(0.0) {
             Some(direction) if direction.dot(&along) < 0.0 => -direction,
             Some(direction) => direction,
             None => along,
         };
-        free + (self.normal - direction * obstacle.friction) * press
+        let friction = network.solids()[self.obstacle].friction;
+        free + (seen.normal - direction * friction) * seen.press(seen.relative(free))
     }
 }
 
@@ -341,246 +450,21 @@ impl ParticleSystem for Resting<'_> {
     fn eval_f(&self, t: f64, y: &[f64], dydt: &mut [f64]) {
         self.network.eval_f(t, y, dydt);
         let n = self.network.particles();
-        let (v, a) = (self.network.halves(y).1, &mut dydt[3 * n..6 * n]);
+        let a = &mut dydt[3 * n..6 * n];
         for rest in self.rests {
-            let (obstacle, i) = (&self.network.solids()[rest.obstacle], rest.particle);
-            let held = rest.held(obstacle, row(v, n, i), row(a, n, i));
-            set_row(a, n, i, held);
+            let held = rest.held(self.network, t, y, row(a, n, rest.particle));
+            set_row(a, n, rest.particle, held);
         }
     }
 
     fn hold(&self, t: f64, y: &mut [f64]) {
         self.network.hold(t, y);
+        for rest in self.rests {
+            rest.hold(self.network, t, y);
+        }
     }
 
     fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
         self.network.measures(visit);
     }
-}
-
-/// Number of intervals of a step at whose ends joints are looked at.
-const INTERVALS: u32 = 16;
-
-/// Search for the first event of a step.
-pub(super) struct Locator {
-    /// Whether fixed steps are split at events too: always in a network with ropes.
-    pub splits_fixed_steps: bool,
-    events: Events,
-    /// Outflows of the fluid, as obstacles.
-    outflows: Vec<Obstacle>,
-    /// Particles that rest on obstacles in the current step.
-    rests: Rests,
-}
-
-impl Locator {
-    /// Creates a search in a model, with room for all its particles.
-    pub fn new(model: &Model) -> Self {
-        let outflows = model.network().map_or(&[][..], outflows).iter();
-        Self {
-            splits_fixed_steps: model.network().is_some_and(has_ropes),
-            events: Events::new(model),
-            outflows: outflows.map(obstacle).collect(),
-            rests: Rests::new(model),
-        }
-    }
-
-    /// Returns whether events are located in the steps of a stepper.
-    pub fn serves(&self, stepper: &Stepper) -> bool {
-        stepper.is_adaptive() || self.splits_fixed_steps
-    }
-
-    /// Returns whether fixed steps are split into parts, each up to an event.
-    pub fn splits(&self, stepper: &Stepper) -> bool {
-        self.splits_fixed_steps && !stepper.is_adaptive()
-    }
-
-    /// Returns a view of the model in which particles rest, if any do.
-    pub fn view<'a>(&'a self, model: &'a Model) -> Option<Resting<'a>> {
-        self.rests.view(model)
-    }
-
-    /// Returns the state at the event that was found.
-    pub fn state(&self) -> &[f64] {
-        &self.events.state
-    }
-
-    /// Lists the particles that rest on obstacles at time t (s), for steps that locate events.
-    pub fn list_rests(
-        &mut self,
-        model: &Model,
-        state: &mut RunState,
-        stepper: &mut Stepper,
-        t: f64,
-        depths: Depths,
-    ) {
-        let method = state.method;
-        let serves = !method.is_implicit() && !method.needs_mechanics() && !method.positions_only();
-        let network = model.network();
-        let network = network.filter(|network| serves && may_rest(network));
-        self.rests.clear();
-        if let Some(network) = network.filter(|_| self.serves(stepper)) {
-            let evaluated = self.rests.list(network, t, &mut state.y, depths);
-            state.work += Work::of(evaluated);
-        }
-        // If other particles rest, the last evaluation of the step before is of another system.
-        let before = std::mem::replace(&mut state.resting, self.rests.fingerprint());
-        if before != state.resting {
-            stepper.forget();
-        }
-    }
-
-    /// Finds the first event of a step of h (s) from time t (s), from y0 to the current state.
-    pub fn first_event(
-        &mut self,
-        model: &Model,
-        state: &mut RunState,
-        stepper: &mut Stepper,
-        y0: &[f64],
-        Interval { t, h }: Interval,
-        depths: Depths,
-    ) -> Option<Event> {
-        let network = model.network()?;
-        let has_ropes = has_ropes(network);
-        let is_none = network.solids().is_empty() && self.outflows.is_empty();
-        if is_none && network.tear_limit().is_none() && !has_ropes {
-            return None;
-        }
-        let RunState { y, work, .. } = state;
-        let step = Searched {
-            network,
-            outflows: &self.outflows,
-            t,
-            h,
-            ends: [y0, y],
-            depths,
-        };
-        if y0.len() != y.len() || y.iter().any(|y| !y.is_finite()) {
-            return None;
-        }
-        let (rests, scratch) = self.rests.split();
-        let resting = Resting::of(model, rests);
-        let system = resting.as_ref().map_or(model.system(), |view| view);
-        let mut state_at = |share: f64, out: &mut [f64]| {
-            *work += stepper.state_at(system, t, share * h, y0, out);
-            system.hold(t + share * h, out);
-        };
-        let event = self.events.first(&step, &mut state_at);
-        let before = event.map_or(1.0, |event| event.share);
-        let state = &mut self.events.state;
-        let span = (t, h, depths.none);
-        let mut evaluated = 0;
-        let stop = if has_ropes {
-            first_stop(&step, before, state, &mut state_at)
-        } else {
-            None
-        };
-        let event = stop.or(event);
-        let before = event.map_or(1.0, |event| event.share);
-        let end = first_end(
-            network,
-            (rests, scratch),
-            span,
-            before,
-            state,
-            &mut |share, out| {
-                evaluated += 1;
-                state_at(share, out);
-            },
-        );
-        let slackens = if has_ropes {
-            let at = &mut |share: f64, out: &mut [f64]| {
-                evaluated += 1;
-                state_at(share, out);
-            };
-            first_slack(network, Interval { t, h }, before, state, at)
-        } else {
-            None
-        };
-        *work += Work::of(evaluated);
-        slackens.or(end).or(event)
-    }
-}
-
-/// Returns an outflow as an obstacle.
-fn obstacle(outflow: &Outflow) -> Obstacle {
-    let shape = Shape::Box {
-        half_extents: outflow.half,
-        axes: [Vector3::x(), Vector3::y(), Vector3::z()],
-    };
-    Obstacle::smooth(shape, Path::Still(outflow.at))
-}
-
-/// Finds where a joint first reaches one of its ends before the share `before` of a step, on the
-/// step's polynomial, unless that lasts for less than one of some intervals. Writes the state there
-/// to `state`.
-fn first_stop(
-    step: &Searched,
-    before: f64,
-    state: &mut Vec<f64>,
-    state_at: &mut dyn FnMut(f64, &mut [f64]),
-) -> Option<Event> {
-    let Searched { network, h, .. } = *step;
-    let [begun, ended] = step.ends.map(|y| open_ends(network, y));
-    // Half of the most by which an error can leave its chord.
-    let is_near = |(a, b): (&OneSided, &OneSided)| {
-        a.value.max(b.value) + 0.5 * h * (a.rate.abs() + b.rate.abs()) > 0.0
-    };
-    if !begun.iter().zip(&ended).any(is_near) {
-        return None;
-    }
-    let none = step.depths.none;
-    // A joint that begins at its end or beyond has passed it a little later.
-    let passed = |value: f64| {
-        if -value > none {
-            0.0
-        } else {
-            none.max(value + 1e-3 * none)
-        }
-    };
-    let mut found = vec![0.0; network.dim()];
-    let mut margin = |share: f64| {
-        state_at(share, &mut found);
-        let now = open_ends(network, &found);
-        let left = begun
-            .iter()
-            .zip(&now)
-            .map(|(begun, now)| passed(begun.value) - now.value);
-        left.fold(f64::INFINITY, f64::min)
-    };
-    let ends = (1..=INTERVALS).map(|k| before * f64::from(k) / f64::from(INTERVALS));
-    let end = ends.into_iter().find(|share| margin(*share) < 0.0)?;
-    let share = first_negative(end, &mut margin)?;
-    state.resize(network.dim(), 0.0);
-    state_at(share, state);
-    Some(Event {
-        share,
-        kind: EventKind::Rested,
-    })
-}
-
-/// Finds where a taut rope slackens before the share `before` of a step of h (s) from t (s), on the
-/// step's polynomial. Writes the state there to `state`.
-fn first_slack(
-    network: &Network,
-    Interval { t, h }: Interval,
-    before: f64,
-    state: &mut Vec<f64>,
-    state_at: &mut dyn FnMut(f64, &mut [f64]),
-) -> Option<Event> {
-    taut(network).next()?;
-    let mut found = vec![0.0; network.dim()];
-    let mut margin = |share: f64| {
-        state_at(share, &mut found);
-        least_tension(network, t + share * h, &found).map_or(0.0, |(_, tension)| tension)
-    };
-    if margin(before) >= 0.0 || margin(0.0) <= 0.0 {
-        return None;
-    }
-    let share = first_negative(before, &mut margin)?;
-    state.resize(network.dim(), 0.0);
-    state_at(share, state);
-    Some(Event {
-        share,
-        kind: EventKind::Rested,
-    })
 }

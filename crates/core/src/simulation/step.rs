@@ -13,13 +13,13 @@ use nalgebra::Vector3;
 
 use super::depths::Depths;
 use super::events::{Event, EventKind};
+use super::locator::Locator;
 use super::phases::{Phases, Settled};
 use super::power::End;
 use super::reach::{
     MIN_RETRY_SHARE, MIN_RETRY_STEP, Part, Reach, STEP_END_TOLERANCE, begin_of, limit_next,
     share_of_bulge, share_of_retry,
 };
-use super::resting::Locator;
 use super::state::RunState;
 use super::stepper::Stepper;
 use super::watch::Watch;
@@ -269,7 +269,8 @@ impl Pipeline {
         }
         self.phases.may_lag = !self.stepper.is_adaptive();
         let settled = self.phases.settle(model, Interval { t, h }, &mut state.y);
-        let settled = settled.map_err(Setback::BlowUp)?;
+        let mut settled = settled.map_err(Setback::BlowUp)?;
+        settled.met.impulse += self.locator.impulse(model, state, (t + h, h));
         let planes = PLANE_PRICE * settled.met.guarded.planes as f64 / model.work();
         state.work.algebra += SWEEP_PRICE * settled.strained.sweeps as f64 + planes;
         if let Some(share) = settled.met.rebound.filter(|_| plan.divides) {
@@ -317,6 +318,9 @@ impl Pipeline {
         match self.stepper.integrate(system, control, t, reach.longest, y) {
             Ok(taken) => {
                 state.work += taken.work;
+                if let Some(resting) = &resting {
+                    resting.hold(t + taken.h, y);
+                }
                 Ok(reach.part(t, taken.h))
             }
             Err(error) => {

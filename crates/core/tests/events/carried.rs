@@ -1,0 +1,124 @@
+//! Particles that rest and slide on curved and moving obstacles, by methods with a tolerance.
+
+use crate::common::{described, method};
+use a3_core::{Control, Simulation};
+
+/// Final state of the first particle of a scene: position and velocity (m, m/s).
+fn end(text: &str, name: &str, tolerance: f64, until: f64) -> [f64; 6] {
+    let control = Control::Tolerance(tolerance);
+    let mut run = Simulation::new(described(text), method(name), control).unwrap();
+    run.advance_to(until).unwrap();
+    let n = run.particles();
+    std::array::from_fn(|k| run.state()[k * n])
+}
+
+/// Checks that a scene's particle ends at this state.
+fn ends_at(text: &str, until: f64, right: [f64; 6]) {
+    for name in ["dop853", "verner65", "dopri5"] {
+        for (tolerance, most) in [(1e-3, 2e-3), (1e-6, 4e-6), (1e-9, 1e-8)] {
+            let state = end(text, name, tolerance, until);
+            for (k, (a, b)) in state.iter().zip(right).enumerate() {
+                let off = (a - b).abs();
+                assert!(off < most, "{name} {tolerance}, number {k}: {off}\n{text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_belt_carries_a_particle_along_until_it_stops() {
+    // Friction accelerates it by mu g until it has the speed of the belt, and stops it as fast.
+    let scene = "gravity = [0, -9.81, 0]
+        particles = { positions = [[0.3, 0.1, 0], [5, 0, 0]], mass = 1 }
+        [[box]]
+        center = [0, 0, 0]
+        size = [8, 0.2, 2]
+        friction = 0.3
+        shift = { by = [2, 0, 0], start = 0.2, end = 1.2 }";
+    ends_at(scene, 2.0, [2.3, 0.1, 0.0, 0.0, 0.0, 0.0]);
+}
+
+/// A particle slides off a ball, from an angle to the vertical, and leaves it where the ball would
+/// have to pull. The right states are those of the equation of the angle, by DOP853 of SciPy with a
+/// tolerance of 1e-12.
+#[test]
+fn a_particle_leaves_a_ball_where_the_equation_of_its_angle_says() {
+    let scene = |angle: f64, friction: f64, shape: &str| {
+        let (sin, cos) = angle.to_radians().sin_cos();
+        format!(
+            "gravity = [0, -9.81, 0]
+            particles = {{ positions = [[{sin}, {cos}, 0]], mass = 1 }}
+            {shape}
+            radius = 1
+            friction = {friction}"
+        )
+    };
+    let sphere = "[[sphere]]\ncenter = [0, 0, 0]";
+    let capsule = "[[capsule]]\nfrom = [0, 0, -1]\nto = [0, 0, 1]";
+    for shape in [sphere, capsule] {
+        let smooth = [1.20200661, -0.21199012, 0.0, 1.66619107, -4.55027269, 0.0];
+        ends_at(&scene(10.0, 0.0, shape), 1.0, smooth);
+        let rough = [1.57193453, -2.08765974, 0.0, 1.32343509, -7.46861289, 0.0];
+        ends_at(&scene(30.0, 0.1, shape), 1.0, rough);
+    }
+}
+
+/// A table turns about the vertical: with enough friction a particle goes round with it, with
+/// little it slides out. Then the right state is that of its equation in the plane, by DOP853 of
+/// SciPy.
+#[test]
+fn a_turntable_carries_a_particle_or_throws_it_off() {
+    let scene = |friction: f64| {
+        format!(
+            "gravity = [0, -9.81, 0]
+            particles = {{ positions = [[0.3, 0.1, 0]], velocities = [[0, 0, -0.3]], mass = 1 }}
+            [[box]]
+            center = [0, 0, 0]
+            size = [2, 0.2, 2]
+            friction = {friction}
+            turn = {{ axis = [0, 1, 0], rate = 1 }}"
+        )
+    };
+    let (sin, cos) = 2.0_f64.sin_cos();
+    let round = [0.3 * cos, 0.1, -0.3 * sin, -0.3 * sin, 0.0, -0.3 * cos];
+    ends_at(&scene(0.8), 2.0, round);
+    let out = [-0.06359947, 0.1, -0.48028542, -0.33668875, 0.0, -0.12724001];
+    ends_at(&scene(0.02), 2.0, out);
+}
+
+/// A box that swings up and down throws a particle where it accelerates downwards faster than it
+/// falls, and catches it: the particle then has the speed of the box.
+#[test]
+fn a_swinging_box_throws_a_particle_and_catches_it() {
+    let (amplitude, rate, gravity): (f64, f64, f64) = (0.05, 20.0, 9.81);
+    let scene = format!(
+        "gravity = [0, -{gravity}, 0]
+        particles = {{ positions = [[0.3, 0.1, 0]], mass = 1 }}
+        [[box]]
+        center = [0, 0, 0]
+        size = [2, 0.2, 2]
+        sine = {{ amplitude = [0, {amplitude}, 0], rate = {rate} }}"
+    );
+    let height = |t: f64| 0.1 + amplitude * (rate * t).sin();
+    let speed = |t: f64| amplitude * rate * (rate * t).cos();
+    let thrown = (gravity / (amplitude * rate * rate)).asin() / rate;
+    let until = thrown + 0.1;
+    let fallen = [
+        height(thrown) + speed(thrown) * 0.1 - 0.5 * gravity * 0.01,
+        speed(thrown) - gravity * 0.1,
+    ];
+    ends_at(&scene, until, [0.3, fallen[0], 0.0, 0.0, fallen[1], 0.0]);
+    let carried = 0.6 * thrown;
+    ends_at(
+        &scene,
+        carried,
+        [0.3, height(carried), 0.0, 0.0, speed(carried), 0.0],
+    );
+    // Caught before the box is at its lowest, it rises with it again.
+    let again = (std::f64::consts::TAU - 0.5) / rate;
+    ends_at(
+        &scene,
+        again,
+        [0.3, height(again), 0.0, 0.0, speed(again), 0.0],
+    );
+}
