@@ -30,9 +30,10 @@ use crate::geometry::{Closest, PairKind, closest};
 /// primitives of one plane touch a corner or an edge from no farther apart than their ranges.
 const NEIGHBOUR_SHARE: f64 = 2.0;
 
-/// Largest speed along the normal of a known contact, over that along the normal at which another
-/// range is entered: 0 for a slide over a seam, 1 where both are landed on at once.
-const SINKS_SHARE: f64 = 0.5;
+/// Largest speed of one thing relative to another, along the normal of contact with one of them,
+/// over that at which the range of the other is entered: 0 for level things at rest, 1 for one that
+/// falls beside the other.
+const ACROSS_SHARE: f64 = 0.5;
 
 /// Place at which one side of a pair touches a primitive of a rigid shape.
 struct Footing {
@@ -209,7 +210,8 @@ impl Surface {
 
     /// Returns whether a side of a pair, which enters the range of its repulsion, only slides on:
     /// it touches something else at the same point, above which the other side does not rise, and
-    /// moves along that. So a box slides over the seam of two boxes.
+    /// to which this moves across. So a box slides over the seam of two boxes. Where it lands on
+    /// both at once, neither has pushed it yet.
     pub(super) fn slides_on(
         &self,
         candidates: &Candidates,
@@ -259,12 +261,12 @@ impl Seen {
     fn slides_on(&self, known: &Self) -> bool {
         let (entering, footing) = (&self.footing, &known.footing);
         let gap = known.thickness - footing.depth;
-        let speed = self.speeds[0] - self.speeds[1];
-        let [sinks, approach] = [footing, entering].map(|at| speed.dot(&at.normal).abs());
+        let across = (known.speeds[1] - self.speeds[1]).dot(&footing.normal);
+        let approach = (self.speeds[0] - self.speeds[1]).dot(&entering.normal);
         known.party == self.party
-            && footing.depth > 0.0
+            && footing.depth > footing.tolerance
             && (footing.at - entering.at).norm() <= NEIGHBOUR_SHARE * known.thickness
             && entering.is_behind(footing, gap)
-            && sinks <= SINKS_SHARE * approach
+            && across.abs() <= ACROSS_SHARE * approach.abs()
     }
 }

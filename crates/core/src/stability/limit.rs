@@ -59,8 +59,7 @@ pub fn tenfold_time(h: f64) -> f64 {
 }
 
 /// Finds the largest steps of a method with which no mode grows, and with which none grows tenfold;
-/// all shorter steps are as good. Modes that have no restoring force, or grow by themselves, are
-/// left out: they fall, buckle or flutter with any method. `None` if no mode is left, or if the
+/// all shorter steps are as good. Modes that fall, buckle or flutter with any method are left out. `None` if no mode is left, or if the
 /// method takes no steps.
 ///
 /// # Errors
@@ -70,8 +69,9 @@ pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Er
     if method.is_foreign() {
         return Ok(limit);
     }
-    for (k, mode) in modes.iter().enumerate().filter(|(_, m)| m.returns()) {
-        let mut growth = Growth::new(method, *mode)?;
+    let judged = modes.iter().map(Mode::judged).enumerate();
+    for (k, mode) in judged.filter_map(|(k, mode)| Some((k, mode?))) {
+        let mut growth = Growth::new(method, mode)?;
         // Rate of the fastest motion, by stiffness or by damping.
         let rate = mode.frequency().max(mode.drag + mode.damping);
         let so_far = limit.unwrap_or(Limit {

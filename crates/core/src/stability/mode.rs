@@ -6,6 +6,9 @@ use crate::system::{Linearized, kick_reads_velocity};
 
 /// Rate of growth of a mode, over its frequency, that may be an error of differences of forces.
 const ROUNDING: f64 = 1e-6;
+/// Stiffness of a mode over its damping squared, up to which damping alone acts: what returns does
+/// so a million million times more slowly than a push decays.
+const WEAKEST_SHARE: f64 = 1e-12;
 /// Distances of eigenvalues from that of the feedback of constraints, over its size: below the
 /// first one, an eigenvalue is that one. Rounding splits a multiple eigenvalue up to the second one
 /// (0.43 for a chain of rods), but leaves the mean of its parts.
@@ -62,6 +65,18 @@ impl Mode {
     #[must_use]
     pub fn returns(&self) -> bool {
         self.stiffness > 0.0 && self.drag + self.damping >= -ROUNDING * self.frequency()
+    }
+
+    /// Returns the mode by whose growth steps are judged: this one, unless it falls, buckles or
+    /// flutters by any method. Where damping alone acts, it has a restoring force that hardly does:
+    /// a push then decays as fast as the damping says.
+    #[must_use]
+    pub fn judged(&self) -> Option<Self> {
+        let damping = self.drag + self.damping;
+        let weakest = WEAKEST_SHARE * damping * damping;
+        let decays = damping > 0.0 && self.stiffness.abs() <= weakest;
+        let stiffness = if decays { weakest } else { self.stiffness };
+        Some(Self { stiffness, ..*self }).filter(Self::returns)
     }
 
     /// Returns both eigenvalues as [re, im] (1/s).

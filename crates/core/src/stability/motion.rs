@@ -199,7 +199,8 @@ impl Motion {
             let count = budget.room(method, &self.scene.model, steps(h, expected));
             let cost = count as f64 * work * f64::from(method.evaluations);
             let affordable = (MAX_LONG_WORK / cost).max(1.0) as u64;
-            let mut run = Simulation::new(self.scene.clone(), method, Control::Step(h))?;
+            let run = Simulation::new(self.scene.clone(), method, Control::Step(h))?;
+            let mut run = run.tolerate_gains();
             let held = take_checked(count * times.min(affordable.max(1)), |count| {
                 let holds = budget.take(&mut run, count).filter(|_| go_on())?;
                 Some(holds && level(&run) < most)

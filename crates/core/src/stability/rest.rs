@@ -371,7 +371,7 @@ pub fn observe_at_rest(
             scene.state.clone_from(&start);
             add_scaled(&mut scene.state, share, &nudge);
             network.hold(0.0, &mut scene.state);
-            Simulation::new(scene, method, Control::Step(h))
+            Simulation::new(scene, method, Control::Step(h)).map(Simulation::tolerate_gains)
         };
         let (mut run, mut beside) = (begin(1.0)?, begin(0.0)?);
         let held = take_checked(steps(h, guess), |count| {

@@ -45,8 +45,8 @@ impl Stability {
     /// The method does not support damped oscillations.
     pub fn growth(&self, method: &Method, h: f64) -> Result<f64, Failure> {
         let mut most = 0.0;
-        for mode in self.at_start.iter().filter(|mode| mode.returns()) {
-            let mut growth = Growth::new(method, *mode).map_err(Failure::usage)?;
+        for mode in self.at_start.iter().filter_map(Mode::judged) {
+            let mut growth = Growth::new(method, mode).map_err(Failure::usage)?;
             most = f64::max(most, growth.of_step(h));
         }
         Ok(most)
@@ -139,8 +139,8 @@ fn region(row: &MethodLimits, style: CurveStyle, modes: &[Mode], h: f64) -> Regi
         };
         Growth::new(method, mode).map_or(f64::INFINITY, |mut growth| growth.of_step(1.0))
     };
-    let returning = modes.iter().filter(|mode| mode.returns());
-    let eigenvalues = returning.flat_map(Mode::eigenvalues);
+    let judged = modes.iter().filter_map(Mode::judged);
+    let eigenvalues = judged.flat_map(|mode| mode.eigenvalues());
     let eigenvalues = eigenvalues.map(|[re, im]| [h * re, h * im]);
     Region {
         style,
