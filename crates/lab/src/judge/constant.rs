@@ -37,7 +37,7 @@ pub const CONSTANTS: [(Constant, &str, &str); 9] = [
 /// Factors that have a name: constant, factor, words that follow "with", and the question to the
 /// author.
 #[rustfmt::skip]
-const NAMED: [(Constant, f64, &str, &str); 11] = [
+const NAMED: [(Constant, f64, &str, &str); 14] = [
     (Constant::Gravity, 0.5, "half the gravity",
      "is a factor 1/2 in the gravity, or is its sum taken by halves?"),
     (Constant::Gravity, 2.0, "twice the gravity", "is gravity added twice?"),
@@ -45,6 +45,8 @@ const NAMED: [(Constant, f64, &str, &str); 11] = [
     (Constant::Gravity, -1.0, "gravity upwards", "has gravity the wrong sign?"),
     (Constant::Stiffness, 2.0, TWICE.0, TWICE.1),
     (Constant::Springs, 2.0, TWICE.0, TWICE.1),
+    (Constant::Stiffness, 0.0, "springs without stiffness", NONE),
+    (Constant::Springs, 0.0, "no springs", NONE),
     (Constant::Stiffness, -1.0, PUSH.0, PUSH.1),
     (Constant::Springs, -1.0, PUSH.0, PUSH.1),
     (Constant::RestLength, 0.0, "rest lengths of 0",
@@ -52,9 +54,11 @@ const NAMED: [(Constant, f64, &str, &str); 11] = [
     (Constant::Damping, 0.0, "springs without damping",
      "is the damping of the springs added to their force?"),
     (Constant::Drag, 0.0, "no drag", "is the drag added to the forces?"),
+    (Constant::Start, 0.0, "a start at rest", "are the velocities of the scene set at the start?"),
 ];
 #[rustfmt::skip]
 const TWICE: (&str, &str) = ("every spring twice", "is every spring visited from both of its ends?");
+const NONE: &str = "is the force of a spring added to its ends?";
 #[rustfmt::skip]
 const PUSH: (&str, &str) =
     ("springs that push where they should pull", "has the force of a spring the wrong sign?");
@@ -81,6 +85,16 @@ impl Change {
         let own = self.own.unwrap_or(1.0);
         let typed = || short(own * self.factor, DIGITS) / own;
         let factor = self.named(NEAR).map_or_else(typed, |row| row.1);
+        Self { factor, ..self }
+    }
+
+    /// Returns the change with another factor. Accelerations are linear in the factor that grows by
+    /// `more` or, for masses, in its inverse that does.
+    pub fn plus(self, more: f64) -> Self {
+        let factor = match self.constant {
+            Constant::Mass => 1.0 / (1.0 / self.factor + more),
+            _ => self.factor + more,
+        };
         Self { factor, ..self }
     }
 

@@ -42,8 +42,8 @@ const MORE_ROWS: usize = 4;
 const MAX_ITERATIONS: usize = 8;
 /// Change of the factor over which a rate of change is taken.
 const DELTA: f64 = 1e-6;
-/// Change of the factor that ends the iterations.
-const SETTLED: f64 = 1e-14;
+/// Largest distance by which the last iteration moves the rows, over that which agrees.
+const SETTLED: f64 = 1e-3;
 /// Least effect of a constant, over the distance that agrees, that tells its value.
 const MIN_EFFECT: f64 = 100.0;
 /// Largest factor.
@@ -484,9 +484,7 @@ impl<'a> Judged<'a> {
                     return None;
                 }
                 let now = self.residuals(with(change), end, bound)?;
-                let factor = change.factor + DELTA;
-                let moved = with(Change { factor, ..change });
-                let moved = self.residuals(moved, end, bound)?;
+                let moved = self.residuals(with(change.plus(DELTA)), end, bound)?;
                 let (mut slope, mut square) = (0.0, 0.0);
                 for (now, moved) in now.all.iter().zip(&moved.all) {
                     let rate = (moved - now) / DELTA;
@@ -498,8 +496,8 @@ impl<'a> Judged<'a> {
                     break;
                 }
                 let less = slope / square;
-                change.factor -= less;
-                if less.abs() <= SETTLED {
+                change = change.plus(-less);
+                if less.powi(2) * square <= SETTLED.powi(2) * now.bound {
                     break;
                 }
             }

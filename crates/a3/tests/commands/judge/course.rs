@@ -12,13 +12,13 @@ pub type Triple = [f64; 3];
 
 /// Masses and springs from `a3 scenes --list`, as a course's program has them.
 pub struct Course {
-    mass: Vec<f64>,
+    pub mass: Vec<f64>,
     pub pinned: Vec<usize>,
     springs: Vec<(usize, usize, f64, f64, f64)>,
     pub gravity: Triple,
     drag: f64,
     x: Vec<Triple>,
-    v: Vec<Triple>,
+    pub v: Vec<Triple>,
     /// Pull of a spring (N) from its stiffness (N/m), its length (m) and its rest length (m).
     pub spring: fn(f64, f64, f64) -> f64,
     /// Whether the force acts on both ends.

@@ -110,3 +110,38 @@ fn constants_that_are_a_little_off_are_named() {
     let words = "but with a gravity of 9.8 m/s² in place of 9.81 m/s²";
     assert!(report.contains(words), "{report}");
 }
+
+#[test]
+fn constants_that_are_far_off_are_named() {
+    let folder = &Folder::new();
+    let list = said(folder, "scenes --print chain --list");
+    let judged_as = |scene: &str, course: &Course| {
+        let states = course.run(trapezoid, 0.004, 200);
+        write(&folder.join("mine.csv"), 0.004, &states, false);
+        judged(folder, scene, "mine.csv").remove(0)
+    };
+    for factor in [0.3, 0.5, 3.0] {
+        let (mut heavy, mut strong) = (Course::of(&list), Course::of(&list));
+        heavy.mass.iter_mut().for_each(|mass| *mass *= factor);
+        strong.gravity = strong.gravity.map(|g| g * factor);
+        for (constant, course) in [("mass", heavy), ("gravity", strong)] {
+            let found = judged_as("chain", &course);
+            let way = &found["method"];
+            assert_eq!(way["constant"], constant, "{factor}: {found:#}");
+            let off = way["factor"].as_f64().unwrap() - factor;
+            assert!(off.abs() < 1e-7, "{constant}: {off}");
+        }
+    }
+    folder.write("cloth.toml", cloth(false));
+    let list = said(folder, "scenes --print cloth.toml --list");
+    let (mut loose, mut still) = (Course::of(&list), Course::of(&list));
+    loose.spring = |_, _, _| 0.0;
+    still.v.fill([0.0; 3]);
+    for (course, mistake) in [
+        (loose, "springs without stiffness"),
+        (still, "a start at rest"),
+    ] {
+        let found = judged_as("cloth.toml", &course);
+        assert_eq!(found["method"]["mistake"], mistake, "{found:#}");
+    }
+}
