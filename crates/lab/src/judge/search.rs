@@ -12,8 +12,6 @@ use super::trial::{Compared, Judged, Start, Trial, Way};
 const MIN_CLEAR: f64 = 100.0;
 /// Largest distance of rows, over the motion, for which single precision is tried.
 const NEAR_SINGLE: f64 = 1e-3;
-/// Number of steps that are tried after one that agrees.
-const MORE_PARTS: usize = 4;
 /// Ratio of the distances of two methods from the rows, from which on the nearer one stands out.
 const CLEARLY: f64 = 10.0;
 /// Largest work of all trials of a kind, in springs and particles that are visited.
@@ -106,17 +104,21 @@ pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
         (&correct, &starts, &whole, false),
         (&slips, scene, &between, false),
     ];
-    for plan in plans {
+    let mut found = vec![];
+    for (k, plan) in plans.into_iter().enumerate() {
         if plan.3 && !judged.rows.are_single() {
             continue;
         }
-        let found = search.agreements(plan)?;
-        if let Some((first, others)) = found.split_first() {
+        found = search.agreements(plan, found)?;
+        // Correct methods at other steps may be much nearer than one that only is accurate.
+        if let Some((first, others)) = found.split_first()
+            && (k > 0 || search.bound(&found) <= 0.0)
+        {
             (search.result.found, search.result.also) = (Some(*first), others.to_vec());
             return Some(search.result);
         }
         // So many rows do not agree by chance: the rest differs by rounding errors that grow.
-        if search.part.is_some() {
+        if found.is_empty() && search.part.is_some() {
             break;
         }
     }
@@ -173,31 +175,33 @@ impl Search<'_> {
         })
     }
 
-    /// Returns the ways that agree with all rows, at the largest step at which one does, or at a
-    /// slightly smaller one at which it agrees much better. `None` if the monitor stopped it.
-    fn agreements(&mut self, (ways, starts, paces, is_single): Plan) -> Option<Vec<Agreement>> {
+    /// Returns the ways that agree with all rows, and much better than `best`: at the largest step
+    /// at which one does, or at a smaller one at which it agrees much better still. Without any,
+    /// returns `best`. `None` if the monitor stopped it.
+    fn agreements(
+        &mut self,
+        (ways, starts, paces, is_single): Plan,
+        mut best: Vec<Agreement>,
+    ) -> Option<Vec<Agreement>> {
         self.is_single = is_single;
-        let (mut best, mut more) = (vec![], MORE_PARTS);
         let work = &self.judged.course.work;
         work.set(0.0);
         for &pace in paces {
-            let is_found = !best.is_empty() || self.part.is_some();
-            let is_enough = is_found && more == 0 || work.get() > MAX_WORK;
-            if is_enough && !pace.is_one_of_few() {
-                continue;
+            let (bound, mut found) = (self.bound(&best), vec![]);
+            if bound <= 0.0 {
+                break;
             }
-            more = more.saturating_sub(usize::from(is_found));
-            let mut found = vec![];
             for &start in starts {
                 for &way in ways {
                     if !self.judged.course.monitor.go_on() {
                         return None;
                     }
-                    let trial = Trial { way, pace, start };
-                    found.extend(self.agreement(trial));
+                    if work.get() <= MAX_WORK || pace.is_one_of_few() {
+                        found.extend(self.agreement(Trial { way, pace, start }, bound));
+                    }
                 }
             }
-            if !found.is_empty() && (best.is_empty() || self.are_better(&found, &best)) {
+            if !found.is_empty() {
                 best = found;
             }
         }
@@ -210,15 +214,17 @@ impl Search<'_> {
         Some(best)
     }
 
-    /// Returns whether one of several ways agrees much better than all others.
-    fn are_better(&self, ways: &[Agreement], others: &[Agreement]) -> bool {
-        CLEARLY * least(ways) + self.judged.rounding(0) < least(others)
+    /// Returns the distance (m) of a way that agrees much better than several others: not above 0
+    /// if these differ from the rows by rounding alone.
+    fn bound(&self, others: &[Agreement]) -> f64 {
+        (least(others) - self.judged.rounding(0)) / CLEARLY
     }
 
-    /// Returns the agreement of a trial with all rows, in the precision of the search.
-    fn agreement(&mut self, trial: Trial) -> Option<Agreement> {
+    /// Returns the agreement of a trial with all rows to a distance (m), in the precision of the
+    /// search.
+    fn agreement(&mut self, trial: Trial, within: f64) -> Option<Agreement> {
         if !self.is_single {
-            return self.agreement_by(self.judged, trial);
+            return self.agreement_by(self.judged, trial, within);
         }
         // A method that is far away is so in single precision, too.
         let near = |_: usize, _: f64| NEAR_SINGLE * self.judged.motion;
@@ -228,13 +234,13 @@ impl Search<'_> {
         }
         let mut single = self.judged.clone();
         single.noise = Some(self.judged.noise(trial)?);
-        self.agreement_by(&single, trial)
+        self.agreement_by(&single, trial, within)
     }
 
-    /// Returns the agreement of a trial with all rows that are compared. One with many of them is
-    /// remembered.
-    fn agreement_by(&mut self, judged: &Judged, trial: Trial) -> Option<Agreement> {
-        let bound = |k: usize, moved: f64| judged.tolerance(k, moved);
+    /// Returns the agreement of a trial with all rows that are compared, to a distance (m). One
+    /// with many of them is remembered.
+    fn agreement_by(&mut self, judged: &Judged, trial: Trial, within: f64) -> Option<Agreement> {
+        let bound = |k: usize, moved: f64| judged.tolerance(k, moved).min(within);
         let step = judged.step_of(trial)?;
         let [longest, shortest] = self.result.steps;
         self.result.steps = [longest.max(step), shortest.min(step)];

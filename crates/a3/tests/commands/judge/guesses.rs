@@ -45,6 +45,21 @@ fn the_step_is_found_in_a_file_of_many_rows() {
     assert_eq!(found["until"], 0.5);
 }
 
+/// An accurate method at the distance of the rows is near, too, but not as near as the right one.
+#[test]
+fn steps_far_shorter_than_the_distance_of_rows_are_found() {
+    let folder = &Folder::new();
+    for step in [2e-3, 1e-3] {
+        said(
+            folder,
+            format!("simulate r {step} --scene chain --fps 20 --until 2 -o mine.csv"),
+        );
+        let found = judged(folder, "chain", "mine.csv").remove(0);
+        assert_eq!(found["method"]["solver"], "rk4", "{found:#}");
+        assert_eq!(found["method"]["step"], step, "{found:#}");
+    }
+}
+
 #[test]
 fn single_precision_is_recognised() {
     let folder = &Folder::new();
