@@ -244,6 +244,9 @@ impl Search<'_> {
         let step = judged.step_of(trial)?;
         let [longest, shortest] = self.result.steps;
         self.result.steps = [longest.max(step), shortest.min(step)];
+        if !judged.begins(trial, &bound) {
+            return None;
+        }
         let trial = judged.fit(trial, &bound)?;
         let compared = judged.compare(trial, &bound)?;
         let (rows, last) = (judged.rows, judged.last());

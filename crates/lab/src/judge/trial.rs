@@ -328,6 +328,13 @@ impl<'a> Judged<'a> {
         Some(noise)
     }
 
+    /// Returns whether a trial agrees with a first row at time 0, which no way to compute steps
+    /// changes.
+    pub fn begins(&self, trial: Trial, bound: Bound) -> bool {
+        let at_start = self.rows.times[0] == 0.0 && matches!(trial.start, Start::Scene);
+        !at_start || distance(self.start(trial), self.rows.positions(0)) <= bound(0, 0.0)
+    }
+
     /// Returns the distance of row k by rounding alone (m).
     pub fn rounding(&self, k: usize) -> f64 {
         ROUNDING * self.radius + DIGITS * self.rows.rounding(k)

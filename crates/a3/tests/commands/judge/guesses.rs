@@ -1,5 +1,7 @@
 //! What `a3 judge` finds out of a program by itself: its step, its precision, and its constants.
 
+use std::time::Instant;
+
 use super::course::{Course, Step, cloth, judged, slowed, symplectic, trapezoid, write};
 use crate::common::{Folder, said};
 
@@ -58,6 +60,21 @@ fn steps_far_shorter_than_the_distance_of_rows_are_found() {
         assert_eq!(found["method"]["solver"], "rk4", "{found:#}");
         assert_eq!(found["method"]["step"], step, "{found:#}");
     }
+}
+
+/// No way to compute steps changes the first row.
+#[test]
+fn a_file_with_another_start_takes_no_search() {
+    let folder = &Folder::new();
+    let course = Course::of(&said(folder, "scenes --print chain --list"));
+    let mut states = course.run(trapezoid, 0.01, 200);
+    states.iter_mut().flatten().for_each(|all| all.reverse());
+    write(&folder.join("mine.csv"), 0.01, &states, true);
+    let begun = Instant::now();
+    let found = judged(folder, "chain", "mine.csv").remove(0);
+    let seconds = begun.elapsed().as_secs_f64();
+    assert!(seconds < 10.0, "{seconds} s");
+    assert!(found["method"].is_null(), "{found:#}");
 }
 
 #[test]
