@@ -107,7 +107,8 @@ const TOML: [(&[&str], &str); 20] = [
     (&["redundant numeric sign"], "a number has one sign at most"),
     (&["floating-point number overflowed"], "the number is too large"),
     (&["invalid boolean"], "the words true and false are written in small letters"),
-    (&["invalid float"], "the words inf and nan are written in small letters"),
+    (&["invalid float"], "a number is written like 0.5 or 1e-3, without formulas, or as inf, in \
+        small letters; a key that has no value is left out"),
     (&["missing comma between array elements"],
         "the values of a list must have `,` between them and `]` at the end"),
     (&["unclosed array"], "the list is not closed: `]` is missing"),

@@ -59,6 +59,8 @@ gravity = [0, -9.81, 0]
     name = "x => line 1: the text in quotes is not closed
     self_collision = "yes" => line 1: self_collision: it must be true or false, not the text "yes"
     self_collision = True => line 1: the words true and false are written in small letters
+    wind = { seed = None } => line 1: a number is written like 0.5 or 1e-3, without formulas,
+    gravity = [0, -9.81*2, 0] => line 1: a number is written like 0.5 or 1e-3, without formulas,
     trail = 1.5 => line 1: trail: it must be a whole number of at least 0, not 1.5
     camera = [0, 0, 1] => line 1: camera: it must be a table with keys among eye, target, not a list
     camera = [[0, 0, 1], [0, 0, 0]] => line 1: camera: it must be a table
