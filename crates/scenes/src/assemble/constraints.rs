@@ -70,12 +70,11 @@ fn constraint(
     match (spec.rod, spec.rope, spec.particle) {
         (Some(ends @ [i, j]), None, None) | (None, Some(ends @ [i, j]), None) if !is_wire => {
             let is_rope = spec.rope.is_some();
+            let key = if is_rope { "rope" } else { "rod" };
             for end in ends {
-                at(
-                    if is_rope { "rope" } else { "rod" },
-                    network.check_particle(end),
-                )?;
+                at(key, network.check_particle(end))?;
             }
+            refuse!(if i == j => key: "it must join two different particles, not {i} with itself");
             let apart = place(network, state, i) - place(network, state, j);
             let length = spec.length.unwrap_or(apart.norm());
             if is_rope {

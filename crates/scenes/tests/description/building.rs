@@ -217,6 +217,9 @@ fn constraints_are_met_at_the_start() {
     assert_eq!(refused.key, "constraint.1");
     let why = "constraint 1, the rod between particles 1 and 2, is off by 4.762 %";
     begins(refused.why, why);
+    let itself = build(&rods(1.0).replace("[1, 2]", "[1, 1]")).unwrap_err();
+    assert_eq!(itself.key, "constraint.1.rod");
+    begins(itself.why, "it must join two different particles");
     let circle = "{ center = [0, 0, 0], normal = [0, 0, 1], radius = 1 }";
     for (name, wire) in [
         ("point", "[0, 0.5, 0]"),
