@@ -60,6 +60,10 @@ const WRONG: &[(&str, &str)] = &[
         "`--scene rug`: there is no such scene; the scenes are cloth, ",
     ),
     (
+        "--scene /",
+        "`--scene /`: this is a folder; the scenes are cloth, ",
+    ),
+    (
         "--scene",
         "`--scene` needs a value: `--scene NAME|FILE`, which is one of cloth, ",
     ),

@@ -296,13 +296,15 @@ fn in_text(fault: Fault) -> InputError {
 /// Writes the error of an unknown name.
 fn unknown(typed: &str) -> String {
     let names: Vec<_> = a3_scenes::SCENES.iter().map(|entry| entry.name).collect();
+    let is_folder = Path::new(typed).is_dir();
+    let what = ["there is no such scene", "this is a folder"][usize::from(is_folder)];
     let near = a3_scenes::nearest(typed, names.iter().copied());
     let all = format!(
         "scenes are {}, or a file that ends in .toml or .json, or a mesh",
         names.join(", ")
     );
     match near {
-        Some(name) => format!("there is no such scene; did you mean {name}? The {all}"),
-        None => format!("there is no such scene; the {all}"),
+        Some(name) => format!("{what}; did you mean {name}? The {all}"),
+        None => format!("{what}; the {all}"),
     }
 }
