@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::impulse::{across, change_in_impact, limited_to, restored};
+use super::impulse::{across, change_in_impact, friction, limited_to, restored};
 use super::listing::Candidate;
 use super::motion::Motion;
 use super::response::{Joined, Response};
@@ -362,14 +362,13 @@ impl ContactPair {
     /// Returns the impulse of friction (N s), after `so_far`, that stops a slip (m/s) as far as the
     /// largest one allows.
     pub fn held(&self, so_far: Vector3<f64>, slip: Vector3<f64>, most: f64) -> Vector3<f64> {
-        let mobility = self.mobility(slip);
-        // Constraints may leave it no way to move there.
-        let stopped = if mobility > 0.0 {
-            so_far - slip / mobility
-        } else {
-            so_far
-        };
-        limited_to(stopped, most)
+        match &self.directed {
+            Some(directed) => {
+                let free = slip - directed.mobility * so_far;
+                friction(&directed.mobility, self.normal, free, most)
+            }
+            None => limited_to(so_far - slip / self.inverse_mass, most),
+        }
     }
 }
 

@@ -1,12 +1,18 @@
 //! The laws of an impact, for all that touches or tightens: restitution, Coulomb friction, and the
 //! separation that bodies get back; and the impulses of a step.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::skin::Law;
 
 /// Fraction of the missing separation of bodies that is restored in a step.
 const RESTORED_SHARE: f64 = 0.1;
+
+/// Largest number of steps of Newton's method for the friction of a contact that slips on.
+const MAX_NEWTON_STEPS: usize = 30;
+
+/// Share of the mobility of a contact that is a rounding error.
+const ROUNDING: f64 = 1e-14;
 
 /// Impulses (N s) on particles during a step, in the order in which they were given.
 #[derive(Clone, Debug, Default)]
@@ -81,6 +87,67 @@ pub(super) fn limited_to(slip: Vector3<f64>, most: f64) -> Vector3<f64> {
     } else {
         slip
     }
+}
+
+/// Returns the impulse of Coulomb friction (N s) across a unit normal, of at most `most`, where a
+/// contact would slip at `free` (m/s) without it, and an impulse changes its velocity by this
+/// matrix (1/kg): the one that stops the slip or, if none does, has that size and is opposite to
+/// the slip that is left.
+pub(super) fn friction(
+    mobility: &Matrix3<f64>,
+    normal: Vector3<f64>,
+    free: Vector3<f64>,
+    most: f64,
+) -> Vector3<f64> {
+    let smallest = normal.abs().imin();
+    let first = Vector3::ith(smallest, 1.0).cross(&normal).normalize();
+    let axes = [first, normal.cross(&first)];
+    let [[a, c], [_, b]] = axes.map(|p| axes.map(|q| p.dot(&(mobility * q))));
+    // The principal axes of the mobility across the normal, and the mobilities along them.
+    let (mean, half) = (0.5 * (a + b), 0.5 * (a - b));
+    let root = (half * half + c * c).sqrt();
+    let turned = if half >= 0.0 {
+        axes[0] * (root + half) + axes[1] * c
+    } else {
+        axes[0] * c + axes[1] * (root - half)
+    };
+    let first = turned.try_normalize(0.0).unwrap_or(axes[0]);
+    let principal = [first, normal.cross(&first)];
+    let mobilities = [mean + root, mean - root];
+    let slips = principal.map(|axis| axis.dot(&free));
+    // With a resistance to the slip beside the mobility, the impulse is opposite to what is left.
+    let with = |resistance: f64| {
+        let along = |k: usize| {
+            let all = mobilities[k] + resistance;
+            // Constraints may leave it no way to move there.
+            if all > ROUNDING * mobilities[0] {
+                -slips[k] / all
+            } else {
+                0.0
+            }
+        };
+        [along(0), along(1)]
+    };
+    let size = |[x, y]: [f64; 2]| (x * x + y * y).sqrt();
+    let mut found = with(0.0);
+    if size(found) > most {
+        if most <= 0.0 {
+            return Vector3::zeros();
+        }
+        // Newton's method on the inverse of the size, which is concave.
+        let mut resistance = (size(slips) / most - mobilities[0]).max(0.0);
+        for _ in 0..MAX_NEWTON_STEPS {
+            found = with(resistance);
+            let length = size(found);
+            let slope = (0..2).map(|k| found[k] * found[k] / (mobilities[k] + resistance));
+            let step = length * length * (length / most - 1.0) / slope.sum::<f64>();
+            if step.is_nan() || step <= ROUNDING * (resistance + mobilities[0]) {
+                break;
+            }
+            resistance += step;
+        }
+    }
+    limited_to(principal[0] * found[0] + principal[1] * found[1], most)
 }
 
 /// Returns the shortest time (s) in which a rebound comes back under an acceleration `press` (m/s2)

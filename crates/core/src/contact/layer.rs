@@ -197,18 +197,22 @@ fn add(points: &[u32; 4], vectors: &[Vector3<f64>; 4], f: &mut [f64]) {
 const BULGE: f64 = 4.0 / 27.0;
 
 /// Returns the largest distance of a vertex from its straight course in a step of h (s) from the
-/// state y0 at time t (s) to y1, over the least thickness that is not 0. Vertices of rigid bodies
-/// do not count; 0 if there are no others.
+/// state y0 at time t (s) to y1, over the least thickness that is not 0: of vertices of rigid
+/// bodies, and of soft surfaces if `soft_count`.
 pub(crate) fn bulge(
     layer: &ContactLayer,
     Interval { t, h }: Interval,
     [y0, y1]: [&[f64]; 2],
+    soft_count: bool,
 ) -> f64 {
     let (surface, obstacles) = (layer.surface(), layer.obstacles());
-    let is_soft = |vertex: &&u32| surface.solid(**vertex).is_none();
-    let bodies = surface.bodies.vertices.iter().filter(is_soft);
-    let soft = bodies.chain(&surface.drops.vertices);
-    if soft.clone().next().is_none() {
+    let all = surface
+        .bodies
+        .vertices
+        .iter()
+        .chain(&surface.drops.vertices);
+    let counted = all.filter(|vertex| soft_count || surface.solid(**vertex).is_some());
+    if counted.clone().next().is_none() {
         return 0.0;
     }
     let half = 3 * surface.particles();
@@ -219,7 +223,7 @@ pub(crate) fn bulge(
         let (before, after) = (&mut motion.v0.points, &mut motion.v.points);
         surface.speeds(obstacles, t, &y0[half..2 * half], before);
         surface.speeds(obstacles, t + h, &y1[half..2 * half], after);
-        let bulges = soft.chain(&surface.obstacles.vertices).map(|i| {
+        let bulges = counted.chain(&surface.obstacles.vertices).map(|i| {
             let i = *i as usize;
             let chord = ends[i] - begins[i];
             let stray = |v: &[Vector3<f64>]| (v[i] * h - chord).norm();

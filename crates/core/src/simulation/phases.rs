@@ -87,14 +87,21 @@ impl Phases {
     }
 
     /// Returns the largest distance of vertices of surfaces from the chords of their courses in a
-    /// step of h (s) from time t (s) to y1, over the least thickness; 0 if nothing touches.
-    pub fn bulge(&self, model: &Model, Interval { t, h }: Interval, y1: &[f64]) -> f64 {
+    /// step of h (s) from time t (s) to y1, over the least thickness; 0 if nothing touches. Soft
+    /// surfaces count if `soft_count`.
+    pub fn bulge(
+        &self,
+        model: &Model,
+        Interval { t, h }: Interval,
+        y1: &[f64],
+        soft_count: bool,
+    ) -> f64 {
         let layer = model.network().and_then(Network::contact_layer);
         let states = [self.y0(), y1];
         let is_known = states[0].len() == states[1].len();
-        layer
-            .filter(|_| is_known)
-            .map_or(0.0, |layer| bulge(layer, Interval { t, h }, states))
+        layer.filter(|_| is_known).map_or(0.0, |layer| {
+            bulge(layer, Interval { t, h }, states, soft_count)
+        })
     }
 
     /// Applies impacts to the particles that touch an obstacle at the end of a step of h (s) that

@@ -193,8 +193,8 @@ impl Reach {
 const MAX_STRAIN_GROWTH: f64 = 1e-2;
 
 /// Largest distance of a vertex from the chord along which the collision safeguard moves it, over
-/// the least thickness, in a step of an adaptive method whose forces are evaluated at its end
-/// alone.
+/// the least thickness, in a step of an adaptive method: of a rigid body or, where forces are
+/// evaluated at the end of the step alone, of any surface.
 const MAX_BULGE: f64 = 0.25;
 
 /// Least share of a step with which it is taken again, except up to just after a touch.

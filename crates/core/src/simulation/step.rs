@@ -247,8 +247,11 @@ impl Pipeline {
             part = self.end_at_event(model, state, plan, part)?;
         }
         let h = part.h;
-        let bulge = if self.stepper.is_adaptive() && state.method.is_implicit() {
-            self.phases.bulge(model, Interval { t, h }, &state.y)
+        // An explicit step sees soft surfaces meet at its stages; rigid bodies rebound at once.
+        let bulge = if self.stepper.is_adaptive() {
+            let is_implicit = state.method.is_implicit();
+            let step = Interval { t, h };
+            self.phases.bulge(model, step, &state.y, is_implicit)
         } else {
             0.0
         };

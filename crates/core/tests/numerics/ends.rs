@@ -47,12 +47,14 @@ fn steps_that_skip_the_motion_are_not_accurate() {
     assert!(error(0.05) < 0.01 * reference.still.position);
 }
 
-/// A jelly falls 0.1 m onto a round obstacle, on which it then rests by impulses after each step.
+/// A jelly with a rod in it falls 0.1 m onto a round obstacle, on which it then rests by impulses
+/// after each step.
 #[test]
 fn a_reference_says_until_when_it_is_clear() {
     let fall = described(
         "gravity = [0, -9.81, 0]\n[[sphere]]\ncenter = [0, -2, 0]\nradius = 2\n[[jelly]]\ngrid = [4, 4, 4]\nsize = [0.3, 0.3, 0.3]\n\
-         at = [0, 0.25, 0]\nmass = 0.01\nstiffness = [40, 20, 10]\n",
+         at = [0, 0.25, 0]\nmass = 0.01\nstiffness = [40, 20, 10]\n\
+         [[constraint]]\nrod = [0, 1]\n",
     );
     let reference = reference(&fall, 0.3);
     let (until, known) = reference.clear_until().unwrap();

@@ -1,4 +1,4 @@
-//! Particles that rebound from simple obstacles, against closed forms.
+//! Particles and bodies that rebound from simple obstacles, against closed forms and models.
 
 use a3_core::{Control, Method, Simulation, integrators};
 
@@ -178,4 +178,70 @@ fn a_moving_box_throws_a_particle() {
     // The box touched the particle on the way, and is apart from it now.
     run.take_steps(1).unwrap();
     assert_eq!(found(&run), [x, y]);
+}
+
+/// Velocity (m/s) of the centre of the only body at the end of a run.
+fn velocity_after(scene: &str, (name, control): (&str, Control), until: f64) -> [f64; 3] {
+    let mut run = Simulation::new(described(scene), method(name), control).unwrap();
+    run.advance_to(until).unwrap();
+    let n = run.particles();
+    std::array::from_fn(|axis| run.state()[(3 + axis) * n])
+}
+
+/// A corner of a thin box strikes a rough floor at an angle. Across the normal the box is far more
+/// mobile in one direction than in the other, and friction turns the slide. The right velocity is
+/// that of Newton's law of restitution and of Coulomb's law, opposite to the slide after the
+/// impact, by a solver of nonlinear equations (`SciPy`'s `fsolve`).
+#[test]
+fn friction_is_opposite_to_the_slide_after_an_oblique_impact() {
+    let scene = "gravity = [0, 0, 0]
+        contact_gravity = 9.81
+        floor = { height = 0, friction = 0.8, restitution = 0.8 }
+        [[body]]
+        parts = [{ box = [0.03297888409383632, 0.9297760087545308, 0.03645240857304532] }]
+        mass = 2.1972109507280573
+        at = [0, 1, 0]
+        rotation = [1.3285348751252595, 0.28906235474867675, 0.33975492268034124]
+        velocity = [-2.1103591447580863, -3.9453925227593447, -2.07982039626075]
+        spin = [0.5476859026083369, -0.17300596024287174, -5.810549819518905]";
+    let right = [-1.439_453_67, -1.847_860_86, -0.541_751_85];
+    for (name, control) in [
+        ("rk4", Control::Step(2e-4)),
+        ("verlet", Control::Step(2e-4)),
+        ("dop853", Control::Tolerance(1e-8)),
+    ] {
+        let found = velocity_after(scene, (name, control), 0.2271);
+        for (found, right) in found.iter().zip(right) {
+            assert!((found - right).abs() < 1e-4, "{name}: {found} {right}");
+        }
+    }
+}
+
+/// Corners of a box that spins strike a wall three times, the last of them on an arc that leads out
+/// again within 7 ms. The right velocity is that of a model of the free rotation with events, by
+/// `SciPy`.
+#[test]
+fn no_impact_on_an_arc_is_missed() {
+    let scene = "gravity = [0, 0, 0]
+        contact_gravity = 9.81
+        [[box]]
+        center = [0, 0, 0]
+        size = [0.05, 1, 1]
+        restitution = 0.6
+        [[body]]
+        parts = [{ box = [0.2, 0.1, 0.1] }]
+        mass = 1
+        at = [-2, 0, 0]
+        velocity = [4, 0, 0]
+        spin = [1, 2, 3]";
+    for (name, control) in [
+        ("rk4", Control::Step(1e-3)),
+        ("dopri5", Control::Tolerance(1e-3)),
+        ("verner65", Control::Tolerance(1e-5)),
+        ("dop853", Control::Tolerance(1e-6)),
+        ("bdf", Control::Tolerance(1e-6)),
+    ] {
+        let [found, ..] = velocity_after(scene, (name, control), 1.0);
+        assert!((found + 1.2577).abs() < 3e-3, "{name}: {found}");
+    }
 }
