@@ -10,7 +10,6 @@ use super::motion::Motion;
 use super::obstacle::Obstacle;
 use super::repulsion::{Pair, Stiffness};
 use super::surface::Surface;
-use crate::interval::Interval;
 use crate::scratch::Scratch;
 
 /// Contact of the surfaces of a network with themselves, one another and obstacles.
@@ -190,46 +189,4 @@ fn add(points: &[u32; 4], vectors: &[Vector3<f64>; 4], f: &mut [f64]) {
             f[2 * n + i] += vector.z;
         }
     }
-}
-
-/// Largest distance of a cubic course from its chord, over the step times the difference between
-/// the velocity at one end and that of the chord.
-const BULGE: f64 = 4.0 / 27.0;
-
-/// Returns the largest distance of a vertex from its straight course in a step of h (s) from the
-/// state y0 at time t (s) to y1, over the least thickness that is not 0: of vertices of rigid
-/// bodies, and of soft surfaces if `soft_count`.
-pub(crate) fn bulge(
-    layer: &ContactLayer,
-    Interval { t, h }: Interval,
-    [y0, y1]: [&[f64]; 2],
-    soft_count: bool,
-) -> f64 {
-    let (surface, obstacles) = (layer.surface(), layer.obstacles());
-    let all = surface
-        .bodies
-        .vertices
-        .iter()
-        .chain(&surface.drops.vertices);
-    let counted = all.filter(|vertex| soft_count || surface.solid(**vertex).is_some());
-    if counted.clone().next().is_none() {
-        return 0.0;
-    }
-    let half = 3 * surface.particles();
-    let bulge = layer.scratch.lend(|Buffers { motion, .. }| {
-        let (begins, ends) = (&mut motion.x0, &mut motion.moves.points);
-        surface.place(obstacles, t, &y0[..half], begins);
-        surface.place(obstacles, t + h, &y1[..half], ends);
-        let (before, after) = (&mut motion.v0.points, &mut motion.v.points);
-        surface.speeds(obstacles, t, &y0[half..2 * half], before);
-        surface.speeds(obstacles, t + h, &y1[half..2 * half], after);
-        let bulges = counted.chain(&surface.obstacles.vertices).map(|i| {
-            let i = *i as usize;
-            let chord = ends[i] - begins[i];
-            let stray = |v: &[Vector3<f64>]| (v[i] * h - chord).norm();
-            BULGE * (stray(before) + stray(after))
-        });
-        bulges.fold(0.0, f64::max)
-    });
-    bulge / surface.least_thickness()
 }

@@ -83,12 +83,11 @@ impl Seen {
         let pose = obstacle.at(t);
         let inner = pose.inwards(x - pose.place.position);
         let place = pose.of(inner);
-        let (height, normal) = match face {
-            Some(Face { point, normal }) => ((inner - point).dot(&normal), normal),
-            None => {
-                let seen = obstacle.shape.separation(inner);
-                (seen.distance, seen.normal)
-            }
+        let (height, normal) = if let Some(Face { point, normal }) = face {
+            ((inner - point).dot(&normal), normal)
+        } else {
+            let seen = obstacle.shape.separation(inner);
+            (seen.distance, seen.normal)
         };
         let speed = v - place.velocity;
         Self {
