@@ -130,7 +130,7 @@ fn rigid_near(surface: &Surface, obstacles: &[Around], courses: &Courses) -> Vec
     let meets = |k: usize| {
         let own = &bodies[k];
         let center = |k: usize| [rigid[k].center() as u32];
-        let touches = |j: usize| !surface.are_one(&center(k), &center(j));
+        let touches = |j: usize| j != k && !surface.are_one(&center(k), &center(j));
         let mut others = 0..rigid.len();
         obstacles.iter().any(|other| own.meets(other))
             || own.meets(&soft)
