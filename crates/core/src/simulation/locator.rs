@@ -168,6 +168,10 @@ impl Locator {
             None
         };
         *work += Work::of(evaluated);
+        let end = end.map(|share| Event {
+            share,
+            kind: EventKind::Rested,
+        });
         slackens.or(end).or(event)
     }
 }

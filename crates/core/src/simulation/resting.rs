@@ -13,7 +13,6 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::depths::Depths;
-use super::events::{Event, EventKind};
 use crate::columns::{row, set_row};
 use crate::contact::Obstacle;
 use crate::measure::Measure;
@@ -305,8 +304,9 @@ impl<'a> Resting<'a> {
     }
 }
 
-/// Finds the first end of a contact before the share `before` of a step of h (s) from t (s), on the
-/// step's polynomial. Writes the state there to `state`. Heights up to `none` (m) count as zero.
+/// Finds the share of a step of h (s) from t (s), below `before`, after which a contact first ends,
+/// on the step's polynomial. Writes the state there to `state`. Heights up to `none` (m) count as
+/// zero.
 pub(super) fn first_end(
     network: &Network,
     (rests, scratch): (&[Rest], &mut Scratch),
@@ -314,7 +314,7 @@ pub(super) fn first_end(
     before: f64,
     state: &mut Vec<f64>,
     state_at: &mut dyn FnMut(f64, &mut [f64]),
-) -> Option<Event> {
+) -> Option<f64> {
     if rests.is_empty() {
         return None;
     }
@@ -334,10 +334,7 @@ pub(super) fn first_end(
     for rest in rests {
         rest.stop(network, t + share * h, state);
     }
-    Some(Event {
-        share,
-        kind: EventKind::Rested,
-    })
+    Some(share)
 }
 
 /// Returns a share of the step, up to `before`, just after which a margin becomes negative; `None`

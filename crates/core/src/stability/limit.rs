@@ -59,8 +59,8 @@ pub fn tenfold_time(h: f64) -> f64 {
 }
 
 /// Finds the largest steps of a method with which no mode grows, and with which none grows tenfold;
-/// all shorter steps are as good. Modes that fall, buckle or flutter with any method are left out. `None` if no mode is left, or if the
-/// method takes no steps.
+/// all shorter steps are as good. Modes that fall, buckle or flutter with any method are left out.
+/// `None` if no mode is left, or if the method takes no steps.
 ///
 /// # Errors
 /// The method does not support a mechanical system with drag and damping as in these modes.

@@ -6,8 +6,8 @@ use a3_core::{Error, Method, Ode};
 /// Degree of the method.
 const DEGREE: usize = 12;
 
-/// Returns a method by Taylor's series for y' = y. With a `share`, it also returns that share of its
-/// polynomial within a step.
+/// Returns a method by Taylor's series for y' = y. With a `share`, it also returns that share of
+/// its polynomial within a step.
 fn taylor(name: &str, share: Option<f64>) -> Method {
     let method = Method::from_estimated_step(name, DEGREE as u32, move |f, t, y, h| {
         let rate = f.at(t, y)?[0];
