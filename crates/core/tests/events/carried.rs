@@ -39,7 +39,7 @@ fn a_belt_carries_a_particle_along_until_it_stops() {
 }
 
 /// A particle slides off a ball, from an angle to the vertical, and leaves it where the ball would
-/// have to pull. The right states are those of the equation of the angle, by DOP853 of SciPy with a
+/// have to pull. The right states are those of the equation of the angle, by `SciPy` with a
 /// tolerance of 1e-12.
 #[test]
 fn a_particle_leaves_a_ball_where_the_equation_of_its_angle_says() {
@@ -56,16 +56,30 @@ fn a_particle_leaves_a_ball_where_the_equation_of_its_angle_says() {
     let sphere = "[[sphere]]\ncenter = [0, 0, 0]";
     let capsule = "[[capsule]]\nfrom = [0, 0, -1]\nto = [0, 0, 1]";
     for shape in [sphere, capsule] {
-        let smooth = [1.20200661, -0.21199012, 0.0, 1.66619107, -4.55027269, 0.0];
+        let smooth = [
+            1.202_006_61,
+            -0.211_990_12,
+            0.0,
+            1.666_191_07,
+            -4.550_272_69,
+            0.0,
+        ];
         ends_at(&scene(10.0, 0.0, shape), 1.0, smooth);
-        let rough = [1.57193453, -2.08765974, 0.0, 1.32343509, -7.46861289, 0.0];
+        let rough = [
+            1.571_934_53,
+            -2.087_659_74,
+            0.0,
+            1.323_435_09,
+            -7.468_612_89,
+            0.0,
+        ];
         ends_at(&scene(30.0, 0.1, shape), 1.0, rough);
     }
 }
 
 /// A table turns about the vertical: with enough friction a particle goes round with it, with
 /// little it slides out. Then the right state is that of its equation in the plane, by DOP853 of
-/// SciPy.
+/// `SciPy`.
 #[test]
 fn a_turntable_carries_a_particle_or_throws_it_off() {
     let scene = |friction: f64| {
@@ -82,7 +96,14 @@ fn a_turntable_carries_a_particle_or_throws_it_off() {
     let (sin, cos) = 2.0_f64.sin_cos();
     let round = [0.3 * cos, 0.1, -0.3 * sin, -0.3 * sin, 0.0, -0.3 * cos];
     ends_at(&scene(0.8), 2.0, round);
-    let out = [-0.06359947, 0.1, -0.48028542, -0.33668875, 0.0, -0.12724001];
+    let out = [
+        -0.063_599_47,
+        0.1,
+        -0.480_285_42,
+        -0.336_688_75,
+        0.0,
+        -0.127_240_01,
+    ];
     ends_at(&scene(0.02), 2.0, out);
 }
 
