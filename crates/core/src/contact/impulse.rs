@@ -115,7 +115,8 @@ pub(super) fn friction(
     let principal = [first, normal.cross(&first)];
     let mobilities = [mean + root, mean - root];
     let slips = principal.map(|axis| axis.dot(&free));
-    // With a resistance to the slip beside the mobility, the impulse is opposite to what is left.
+    // Impulse at which the velocity that remains, after friction, is minus the impulse times the
+    // resistance (1/kg).
     let with = |resistance: f64| {
         let along = |k: usize| {
             let all = mobilities[k] + resistance;

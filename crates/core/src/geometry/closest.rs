@@ -268,12 +268,8 @@ pub(crate) fn of_box(
     })
 }
 
-/// Returns the nearest point of a capsule to a point d inside it.
-pub(crate) fn of_capsule(
-    d: Vector3<f64>,
-    [a, b]: [Vector3<f64>; 2],
-    radius: f64,
-) -> Option<Nearest> {
+/// Returns a segment as a vector, and the share of it after which it is nearest to d.
+pub(super) fn along_axis([a, b]: [Vector3<f64>; 2], d: Vector3<f64>) -> (Vector3<f64>, f64) {
     let axis = b - a;
     let squared = axis.norm_squared();
     let share = if squared > 0.0 {
@@ -281,6 +277,16 @@ pub(crate) fn of_capsule(
     } else {
         0.0
     };
+    (axis, share)
+}
+
+/// Returns the nearest point of a capsule to a point d inside it.
+pub(crate) fn of_capsule(
+    d: Vector3<f64>,
+    [a, b]: [Vector3<f64>; 2],
+    radius: f64,
+) -> Option<Nearest> {
+    let (axis, share) = along_axis([a, b], d);
     let middle = a + share * axis;
     let Nearest { point, normal } = of_sphere(d - middle, radius, || upwards(axis))?;
     Some(Nearest {

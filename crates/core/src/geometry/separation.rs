@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::closest::Separation;
+use super::closest::{Separation, along_axis};
 use super::shape::Shape;
 
 impl Shape {
@@ -91,18 +91,6 @@ impl Shape {
             Self::Floor => f64::INFINITY,
         }
     }
-}
-
-/// Returns a segment as a vector, and the share of it after which it is nearest to d.
-fn along_axis([a, b]: [Vector3<f64>; 2], d: Vector3<f64>) -> (Vector3<f64>, f64) {
-    let axis = b - a;
-    let squared = axis.norm_squared();
-    let share = if squared > 0.0 {
-        ((d - a).dot(&axis) / squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    (axis, share)
 }
 
 /// Returns the separation of d from a sphere of that radius (m) around the origin.
