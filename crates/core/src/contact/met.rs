@@ -391,15 +391,15 @@ impl Met<'_> {
 
     /// Returns the slip of particle i after friction (m/s), from the slip before it and the share
     /// of its speed that friction leaves. The slip turns with an obstacle that turns: friction acts
-    /// along the mean of its directions at the beginning and the end of the step, or along the
-    /// latter if the slip has reversed within the step.
+    /// along the mean of the slips at the beginning and the end of the step, or along the latter if
+    /// the slip has reversed within the step.
     fn left(&self, i: usize, (slip, kept): (Vector3<f64>, f64), up: Vector3<f64>) -> Vector3<f64> {
         let turns = kept > 0.0 && self.after.orientation.is_some();
         let begun = turns.then(|| self.begun(i, up)).flatten();
         let begun = begun.filter(|begun| begun.dot(&slip) > 0.0);
         begun.map_or(slip * kept, |begun| {
-            let (speed, along) = (slip.norm(), begun.normalize() + slip.normalize());
-            let left = slip - along.normalize() * (speed * (1.0 - kept));
+            let (speed, along) = (slip.norm(), (begun + slip).normalize());
+            let left = slip - along * (speed * (1.0 - kept));
             left.cap_magnitude(speed * kept)
         })
     }

@@ -99,9 +99,14 @@ impl Seen {
         }
     }
 
+    /// Returns the part of a vector along the surface.
+    fn along(&self, a: Vector3<f64>) -> Vector3<f64> {
+        a - self.normal * a.dot(&self.normal)
+    }
+
     /// Returns the part of the velocity along the surface (m/s).
     fn slide(&self) -> Vector3<f64> {
-        self.speed - self.normal * self.speed.dot(&self.normal)
+        self.along(self.speed)
     }
 
     /// Returns an acceleration (m/s2) relative to the obstacle.
@@ -246,7 +251,7 @@ impl Rests {
                 return false;
             }
             let slide = seen.slide();
-            let across = free - seen.normal * free.dot(&seen.normal);
+            let across = seen.along(free);
             let slack = (depths.still() * most).sqrt();
             let kept = if slide.norm() > slack {
                 rest.slide = Slide::of(slide, slide.norm(), 0.0);
@@ -383,7 +388,7 @@ impl Rest {
         let press = seen.press(free);
         let most = obstacle.friction * press;
         let other = match self.slide {
-            None => most - (free - seen.normal * free.dot(&seen.normal)).norm(),
+            None => most - seen.along(free).norm(),
             Some(slide) if slide.speed > 0.0 => {
                 let speed = seen.slide().dot(&slide.along) + slide.slack;
                 return (press / size + ROUNDING).min(speed / slide.speed);
@@ -423,18 +428,27 @@ impl Rest {
     /// time t (s), from the acceleration without them.
     fn held(&self, network: &Network, t: f64, y: &[f64], free: Vector3<f64>) -> Vector3<f64> {
         let seen = self.seen(network, t, y);
-        let Some(Slide { along, .. }) = self.slide else {
+        let Some(Slide { along, slack, .. }) = self.slide else {
             return seen.place.acceleration;
+        };
+        let driven = seen.relative(free);
+        let slip = seen.slide();
+        // Below its slack, friction turns a slip faster than any step can follow: it points where
+        // the particle is driven.
+        let slides = if slip.norm() > slack {
+            slip
+        } else {
+            seen.along(driven)
         };
         // Past its turning point the slide continues as if friction did not turn: the step ends at
         // that point, and its polynomial stays smooth.
-        let direction = match seen.slide().try_normalize(0.0) {
+        let direction = match slides.try_normalize(0.0) {
             Some(direction) if direction.dot(&along) < 0.0 => -direction,
             Some(direction) => direction,
             None => along,
         };
         let friction = network.solids()[self.obstacle].friction;
-        free + (seen.normal - direction * friction) * seen.press(seen.relative(free))
+        free + (seen.normal - direction * friction) * seen.press(driven)
     }
 }
 

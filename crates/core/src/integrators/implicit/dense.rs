@@ -88,7 +88,7 @@ impl Dense {
             if newton == Newton::Once || changes.are_over(1e-9) {
                 return Ok(work);
             }
-            if !changes.are_finite() {
+            if !changes.are_finite() || changes.lead_away() {
                 break;
             }
         }

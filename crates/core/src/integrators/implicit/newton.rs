@@ -209,6 +209,12 @@ impl Changes {
         self.last.is_finite()
     }
 
+    /// Returns whether the last change is larger than the first one and than the state: the
+    /// iteration has left the guess behind, and would at best find another solution.
+    pub fn lead_away(&self) -> bool {
+        self.last > self.first.max(self.size)
+    }
+
     /// Returns the error for changes that are not negligible after all iterations.
     pub fn failure(&self) -> Error {
         Error::NoConvergence {
