@@ -87,6 +87,23 @@ fn a_box_sticks_or_slides() {
     assert!(moved < 1e-5, "{moved}");
 }
 
+/// Friction tips a box in each step, and the floor turns it back: its pressure, by which friction
+/// is bounded, is that which acted, also where the equations of a step are hard to solve.
+#[test]
+fn a_box_slides_as_far_in_long_steps() {
+    let scene = "gravity = [0, -9.81, 0]
+        floor = { height = 0, friction = 0.3 }
+        body = [{ at = [0, 0.1008, 0], velocity = [1.5, 0, 0], mass = 1, friction = 0.3,
+            parts = [{ box = [0.4, 0.2, 0.3] }] }]";
+    let exact = 1.5 * 1.5 / (2.0 * 0.3 * 9.81);
+    for (method, step) in [("implicit", 0.02), ("implicit", 0.005), ("verlet", 0.002)] {
+        let mut run = run(scene, method, Control::Step(step));
+        run.advance_to(1.0).unwrap();
+        let way = center(&run, 0)[0].x;
+        assert!((way / exact - 1.0).abs() < 0.05, "{method} {step}: {way} m");
+    }
+}
+
 /// Where two equal faces lie on one another, dozens of pairs meet at each corner. Together they
 /// hold a box up to the slope of Coulomb's law.
 #[test]

@@ -3,13 +3,16 @@
 
 use super::jacobian::Jacobian;
 use super::lu::Lu;
-use super::newton::{Changes, MAX_ITERATIONS, Newton};
+use super::newton::{Changes, NOISE, Newton};
 use crate::error::Error;
 use crate::integrators::integrator::check_dim;
 use crate::integrators::sweep::{add_scaled, scaled_sum};
 use crate::refusal::Refusal;
 use crate::system::{ParticleSystem, rigid_of};
 use crate::work::Work;
+
+/// Largest number of times that a correction is halved.
+const MAX_HALVINGS: usize = 8;
 
 /// Solver of the implicit stages of such a system, with its scratch. Particles on rigid bodies
 /// stay as they are.
@@ -20,8 +23,10 @@ pub(crate) struct Dense {
     /// Change of the unknowns, and of the whole state.
     solution: Vec<f64>,
     change: Vec<f64>,
+    /// Last correction of the whole state.
+    last: Vec<f64>,
     f: Vec<f64>,
-    /// State at the beginning of a step.
+    /// State at the beginning of a step, or after the first iteration.
     pub(super) begun: Vec<f64>,
     /// Work of the solutions that failed.
     pub(super) spent: Work,
@@ -36,6 +41,7 @@ impl Dense {
             factors: Lu::new(order),
             solution: vec![0.0; order],
             change: vec![0.0; system.dim()],
+            last: vec![0.0; system.dim()],
             f: vec![0.0; system.dim()],
             begun: vec![0.0; system.dim()],
             spent: Work::default(),
@@ -61,40 +67,82 @@ impl Dense {
         }
         let mut work = Work::default();
         let mut changes = Changes::new(true);
-        let mut renews = true;
-        for _ in 0..MAX_ITERATIONS {
-            let kept = !renews && changes.shrink_fast() != Some(false);
-            if !kept {
+        let mut is_begun = false;
+        // Whether the state after the first iteration is kept.
+        let mut is_kept = false;
+        for _ in 0..newton.most() {
+            system.eval_f(t, y, &mut self.f);
+            work += Work::of(1);
+            let mut fits = false;
+            if is_begun {
+                let (cost, change) = self.shorten(system, t, (a, base), y, &changes);
+                work += cost;
+                fits = changes.shrink_to(change) && changes.shrink_fast() != Some(false);
+            }
+            if !fits {
                 let (formed, of_use) = self.keep(system, t, [a, a], y);
                 work += formed;
                 if !of_use {
                     break;
                 }
+                work += self.solve_linear(a, base, y);
             }
-            work += self.correct(system, t, a, base, y);
+            is_begun = true;
+            add_scaled(y, 1.0, &self.change);
+            self.last.copy_from_slice(&self.change);
             let change = self.jacobian.norm(&self.change);
-            // A larger change by an old Jacobian may lead to another solution.
-            renews = kept && changes.are_below(change);
-            if renews {
-                add_scaled(y, -1.0, &self.change);
-                continue;
-            }
             // Where bodies are does not matter.
             let size = match rigid_of(system) {
                 Some(_) => (self.solution.len() as f64).sqrt(),
                 None => self.jacobian.norm(y),
             };
             changes.add(change, size, 0.0);
-            if newton == Newton::Once || changes.are_over(1e-9) {
+            if changes.are_over(NOISE) {
                 return Ok(work);
             }
-            if !changes.are_finite() || changes.lead_away() {
+            if newton == Newton::Once && !is_kept {
+                self.begun.copy_from_slice(y);
+                is_kept = true;
+            }
+            if !changes.are_finite() {
                 break;
             }
+        }
+        if is_kept {
+            y.copy_from_slice(&self.begun);
+            return Ok(work);
         }
         self.spent += work;
         self.jacobian.check()?;
         Err(changes.failure())
+    }
+
+    /// Shortens the last correction of y, where f is known, while the next one by the same factors
+    /// is larger: the iteration would lead away, perhaps to another solution (the natural
+    /// monotonicity test: Deuflhard, *Newton methods for nonlinear problems*, 2004). Returns the
+    /// cost, and the size of the next correction, which it does not make.
+    fn shorten(
+        &mut self,
+        system: &dyn ParticleSystem,
+        t: f64,
+        (a, base): (f64, &[f64]),
+        y: &mut [f64],
+        changes: &Changes,
+    ) -> (Work, f64) {
+        let mut work = self.solve_linear(a, base, y);
+        let mut next = self.jacobian.norm(&self.change);
+        for _ in 0..MAX_HALVINGS {
+            if !changes.overshoot(next) {
+                break;
+            }
+            self.last.iter_mut().for_each(|last| *last *= 0.5);
+            add_scaled(y, -1.0, &self.last);
+            system.eval_f(t, y, &mut self.f);
+            work += Work::of(1);
+            work += self.solve_linear(a, base, y);
+            next = self.jacobian.norm(&self.change);
+        }
+        (work, next)
     }
 
     /// Adds the solution of (M - a J) change = M (base - y) + a f(t, y) to y, by the factors.
@@ -106,8 +154,18 @@ impl Dense {
         base: &[f64],
         y: &mut [f64],
     ) -> Work {
-        let (unknowns, change) = (&self.jacobian.unknowns, &mut self.solution);
         system.eval_f(t, y, &mut self.f);
+        let work = self.solve_linear(a, base, y);
+        add_scaled(y, 1.0, &self.change);
+        Work {
+            evaluations: 1,
+            ..work
+        }
+    }
+
+    /// Solves (M - a J) change = M (base - y) + a f(t, y), where f is known, by the factors.
+    fn solve_linear(&mut self, a: f64, base: &[f64], y: &[f64]) -> Work {
+        let (unknowns, change) = (&self.jacobian.unknowns, &mut self.solution);
         if self.jacobian.mass.is_empty() {
             for (change, &i) in change.iter_mut().zip(unknowns) {
                 *change = base[i] + a * self.f[i] - y[i];
@@ -121,10 +179,8 @@ impl Dense {
         for (change, &i) in change.iter().zip(unknowns) {
             self.change[i] = *change;
         }
-        add_scaled(y, 1.0, &self.change);
         let algebra = self.jacobian.algebra(self.factors.cost_of_solution());
         Work {
-            evaluations: 1,
             solves: 1,
             ..algebra
         }

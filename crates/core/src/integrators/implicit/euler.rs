@@ -1,6 +1,7 @@
 //! Implicit Euler: y1 = y + h f(t + h, y1), with forces by one iteration of Newton's method
-//! (Baraff, Witkin, *Large Steps in Cloth Simulation*, 1998). Any step is stable, and longer steps
-//! damp the motion more. Order 1.
+//! (Baraff, Witkin, *Large Steps in Cloth Simulation*, 1998). With rigid bodies, whose friction
+//! follows from the forces at the end of the step, there are more, if they lead to the solution.
+//! Any step is stable, and longer steps damp the motion more. Order 1.
 
 use super::super::method::{Create, Method, View};
 use super::divided::{Divisible, is_plain};

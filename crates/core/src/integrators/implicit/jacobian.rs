@@ -72,7 +72,7 @@ pub(super) struct Jacobian {
     /// Entries of the mass matrix M, column by column; none if it is 1.
     pub mass: Vec<(u32, u32, f64)>,
     /// Whether differences are central: for bodies and constraints, of whose equations implicit
-    /// Euler makes one iteration, which keeps the error of the matrix.
+    /// Euler may make a single iteration, which keeps the error of the matrix.
     is_central: bool,
     /// Whether a pattern is still to be searched.
     searches: bool,

@@ -15,16 +15,30 @@ use crate::error::Error;
 
 /// Largest number of iterations of Newton's method.
 pub(super) const MAX_ITERATIONS: u32 = 30;
+/// The same where one iteration is enough.
+const MAX_TRIED: u32 = 12;
 
 /// Number of iterations of Newton's method.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Newton {
-    /// One iteration, with compressed springs clamped.
+    /// One iteration, with compressed springs clamped; of rigid bodies more, if they lead to a
+    /// solution.
     Once,
     /// Iterations until the state no longer changes.
     Full,
     /// The same for the middle of a step, at whose end constraints are met.
     Mirrored,
+}
+
+impl Newton {
+    /// Returns the largest number of iterations.
+    pub fn most(self) -> u32 {
+        if self == Self::Once {
+            MAX_TRIED
+        } else {
+            MAX_ITERATIONS
+        }
+    }
 }
 
 /// Returns the Euclidean norm.
@@ -119,6 +133,8 @@ impl Secants {
 /// Relative change of the state at which the iteration ends: the next change would vanish in
 /// rounding.
 pub(super) const TOLERANCE: f64 = 1e-11;
+/// Change of plain numbers, relative to the state, that may be a rounding error of f.
+pub(super) const NOISE: f64 = 1e-9;
 /// Ratio of consecutive changes up to which the tangent is kept for the next iteration.
 const MAX_KEPT_RATE: f64 = 0.03;
 /// Relative residual of the linear system in all iterations except the last: the equations are
@@ -199,20 +215,20 @@ impl Changes {
             || stay && self.last <= noise * self.size
     }
 
-    /// Returns whether the last change is smaller than another one, which is finite.
-    pub fn are_below(&self, other: f64) -> bool {
-        self.last < other && other.is_finite()
+    /// Returns whether the next change is no larger than the last one.
+    pub fn shrink_to(&self, next: f64) -> bool {
+        next <= self.last
+    }
+
+    /// Returns whether the last change went too far, because the next one is larger, and not by a
+    /// rounding error.
+    pub fn overshoot(&self, next: f64) -> bool {
+        !self.shrink_to(next) && self.last > NOISE * self.size
     }
 
     /// Returns whether the last change is finite, so that another iteration is possible.
     pub fn are_finite(&self) -> bool {
         self.last.is_finite()
-    }
-
-    /// Returns whether the last change is larger than the first one and than the state: the
-    /// iteration has left the guess behind, and would at best find another solution.
-    pub fn lead_away(&self) -> bool {
-        self.last > self.first.max(self.size)
     }
 
     /// Returns the error for changes that are not negligible after all iterations.

@@ -30,7 +30,8 @@ const METHODS: &str = "\
         + h Σ b k. h keeps the error, estimated by another h Σ d k, within the tolerance.
     dop853: k₁ = f(t, y), each next k = f(t + c h, y + h Σ a k) of those before, up to k₁₂; y₁ = \
         y + h Σ b k. h keeps the error, estimated by two other sums, within the tolerance.
-    implicit: y₁ = y + h f(t + h, y₁), by Newton's method: for forces, by one iteration
+    implicit: y₁ = y + h f(t + h, y₁), by Newton's method: for forces, by one iteration; \
+        with rigid bodies, by more
     rkf45: k₁ = f(t, y), each next k = f(t + c h, y + h Σ a k) of those before, up to k₆; y₁ = y \
         + h Σ b k. h keeps the error, estimated by another h Σ d k, within the tolerance.
     tr-bdf2: Y = y + g h (f(t, y) + f(t + 2 g h, Y)), y₁ = y + h (w f(t, y) + w f(t + 2 g h, Y) + \
