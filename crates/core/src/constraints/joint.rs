@@ -275,8 +275,8 @@ impl Stop {
             return Ok(());
         }
         Err(Error::Invalid(format!(
-            "only a hinge and a slider have limits: the first below the second, and for a hinge by \
-             less than a whole turn, not {least} and {most}"
+            "only a hinge and a slider have limits: the first below the second, and for a hinge in \
+             radians, by less than a whole turn, 6.283; not {least} and {most}"
         )))
     }
 

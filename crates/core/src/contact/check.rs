@@ -33,9 +33,16 @@ pub struct Crossed {
 
 impl fmt::Display for Crossed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.told(&|whole| whole.to_string()))
+    }
+}
+
+impl Crossed {
+    /// Returns the pair in words, with these names of bodies and obstacles.
+    pub(crate) fn told(&self, name: &dyn Fn(Vertex) -> String) -> String {
         let side = |vertices: &[Vertex]| {
             if let [whole @ (Vertex::Obstacle(_) | Vertex::Body(_)), ..] = vertices {
-                return whole.to_string();
+                return name(*whole);
             }
             let numbers = vertices.iter().filter_map(|vertex| match vertex {
                 Vertex::Particle(i) => Some(i.to_string()),
@@ -48,7 +55,7 @@ impl fmt::Display for Crossed {
                 _ => format!("the triangle of particles {numbers}"),
             }
         };
-        write!(f, "{} crosses {}", side(&self.first), side(&self.second))
+        format!("{} crosses {}", side(&self.first), side(&self.second))
     }
 }
 

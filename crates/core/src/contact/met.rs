@@ -31,6 +31,9 @@ pub struct Statistics {
     pub depth: f64,
     /// Share of the step after which that particle touched the obstacle, for uniform motion.
     pub touched: f64,
+    /// Estimated error of the displacements by contact on obstacles that are curved or turn (m):
+    /// it acts after the step, where the estimate of the method does not see it.
+    pub missed: f64,
     /// Actions of the collision safeguard, if surfaces touch.
     pub guarded: Guarded,
     /// End of a slide that friction stops within the step: of the one that would go farthest after
@@ -201,10 +204,12 @@ impl Met<'_> {
             let velocity = row(v, n, i) - own;
             let outwards = velocity.dot(&nearest.normal);
             let inwards = outwards.min(0.0);
+            let reaction = (nearest.normal, -inwards);
+            let reaction = self.reaction(i, (at, velocity), reaction, noted);
             for axis in self.axes.clone() {
                 x[axis * n + i] = c[axis] + nearest.point[axis];
                 if !is_held {
-                    v[axis * n + i] -= inwards * nearest.normal[axis];
+                    v[axis * n + i] += reaction[axis];
                 }
             }
             if let Some(x0) = self.x0 {
@@ -224,7 +229,7 @@ impl Met<'_> {
                 noted.add_depth(moved_in, 1.0 - moved_in / approach);
             }
             if self.friction > 0.0 {
-                let slip = across(velocity, nearest.normal);
+                let slip = across(velocity + reaction, nearest.normal);
                 let outwards = nearest.normal * outwards.max(0.0);
                 let kept = self.kept(slip, -inwards);
                 if kept == 0.0 {
@@ -363,6 +368,37 @@ impl Met<'_> {
         }
     }
 
+    /// Returns the change of the velocity (m/s) by which the obstacle stops an approach (m/s) of
+    /// particle i along the normal `up`, where the particle ends at x (m) with the velocity
+    /// `relative` to the obstacle (m/s). If it touches from the beginning of the step, the reaction
+    /// acts along the mean of the normals at both ends: on a curved obstacle, or one that turns,
+    /// that is of order 2. Notes the correction, over the step.
+    fn reaction(
+        &self,
+        i: usize,
+        (x, relative): (Vector3<f64>, Vector3<f64>),
+        (up, approach): (Vector3<f64>, f64),
+        noted: &mut Noted,
+    ) -> Vector3<f64> {
+        let (straight, shape) = (up * approach, &self.obstacle.shape);
+        let is_flat = shape.is_faceted() && self.after.orientation.is_none();
+        let Some(x0) = self.x0.filter(|_| !is_flat && approach > 0.0) else {
+            return straight;
+        };
+        let x0 = row(x0, self.inverse_masses.len(), i);
+        let begun = shape.separation(self.before.inwards(x0 - self.before.place.position));
+        let mean = (self.before.outwards(begun.normal) + up).try_normalize(0.0);
+        let reaction = mean.map_or(straight, |mean| mean * (approach / mean.dot(&up)));
+        // One that turns too far within the step would give energy.
+        let touches = begun.distance.abs() <= TOUCHING_SHARE * (x - x0).norm();
+        if !touches || (relative * 2.0 + reaction).dot(&reaction) > 0.0 {
+            return straight;
+        }
+        let missed = &mut noted.statistics.missed;
+        *missed = missed.max((reaction - straight).norm() * self.span.h);
+        reaction
+    }
+
     /// Finds the end of the slide of particle i, whose slip at the end of the step (m/s) friction
     /// stops, where contact changed the velocity along the normal `up` by `change` (m/s).
     fn stop(&self, i: usize, slip: Vector3<f64>, (up, change): (Vector3<f64>, f64)) -> Stop {
@@ -390,12 +426,11 @@ impl Met<'_> {
     }
 
     /// Returns the slip of particle i after friction (m/s), from the slip before it and the share
-    /// of its speed that friction leaves. The slip turns with an obstacle that turns: friction acts
-    /// along the mean of the slips at the beginning and the end of the step, or along the latter if
-    /// the slip has reversed within the step.
+    /// of its speed that friction leaves. The slip turns within a step, and friction acts along the
+    /// mean of the slips at the beginning and the end of the step, or along the latter if the slip
+    /// has reversed within the step.
     fn left(&self, i: usize, (slip, kept): (Vector3<f64>, f64), up: Vector3<f64>) -> Vector3<f64> {
-        let turns = kept > 0.0 && self.after.orientation.is_some();
-        let begun = turns.then(|| self.begun(i, up)).flatten();
+        let begun = (kept > 0.0).then(|| self.begun(i, up)).flatten();
         let begun = begun.filter(|begun| begun.dot(&slip) > 0.0);
         begun.map_or(slip * kept, |begun| {
             let (speed, along) = (slip.norm(), (begun + slip).normalize());

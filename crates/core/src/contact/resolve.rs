@@ -233,10 +233,11 @@ impl ContactPhase {
     ) -> Result<Statistics, Pinched> {
         let (impulses, length) = &mut self.impulses;
         *length = h;
-        let guarded = guard(layer, bodies, Interval { t, h }, &self.y0, y1, impulses)?;
+        let mut guarded = guard(layer, bodies, Interval { t, h }, &self.y0, y1, impulses)?;
         self.last = Statistics {
             contacts: guarded.impulses,
             impulse: guarded.impulse,
+            missed: std::mem::take(&mut guarded.missed),
             guarded,
             ..Statistics::default()
         };

@@ -51,13 +51,22 @@ fn check_single(network: &Network, t: f64, x: &[f64]) -> Result<(), Error> {
             has_faces && obstacle.depth(t, place) >= 0.0
         };
         if let Some(k) = network.obstacles().iter().position(is_in) {
-            let name = Vertex::Obstacle(k);
+            let name = name(network, Vertex::Obstacle(k));
             return Err(Error::Invalid(format!(
                 "particle {i} is in {name} or on it"
             )));
         }
     }
     Ok(())
+}
+
+/// Returns the name of a vertex: of a floor, the only one of its kind, without its number.
+fn name(network: &Network, vertex: Vertex) -> String {
+    let shape = |k: usize| network.obstacles().get(k).map(|obstacle| &obstacle.shape);
+    match vertex {
+        Vertex::Obstacle(k) if shape(k) == Some(&Shape::Floor) => "the floor".into(),
+        other => other.to_string(),
+    }
 }
 
 /// Checks that there are not too many pairs at the same place to list them.
@@ -188,7 +197,12 @@ impl Parts {
     }
 
     /// Returns the name of a part, with the number of its particles unless it was `told` before.
-    fn name(&self, whole: Whole, told: &mut BTreeSet<Whole>) -> String {
+    fn name(
+        &self,
+        whole: Whole,
+        told: &mut BTreeSet<Whole>,
+        name: &dyn Fn(Vertex) -> String,
+    ) -> String {
         match whole {
             Whole::Part(first) => {
                 let (number, size) = self.sizes.get(&first).copied().unwrap_or((0, 1));
@@ -198,8 +212,8 @@ impl Parts {
                     format!("part {number}")
                 }
             }
-            Whole::Body(k) => Vertex::Body(k).to_string(),
-            Whole::Obstacle(k) => Vertex::Obstacle(k).to_string(),
+            Whole::Body(k) => name(Vertex::Body(k)),
+            Whole::Obstacle(k) => name(Vertex::Obstacle(k)),
         }
     }
 }
@@ -233,7 +247,8 @@ impl fmt::Display for Description<'_> {
         let Some((first, more)) = self.crossed.split_first() else {
             return f.write_str("nothing crosses");
         };
-        write!(f, "{first}")?;
+        let name = |vertex: Vertex| name(self.network, vertex);
+        f.write_str(&first.told(&name))?;
         let place = self
             .place(&first.first)
             .or_else(|| self.place(&first.second));
@@ -263,11 +278,11 @@ impl fmt::Display for Description<'_> {
         let mut told = BTreeSet::new();
         for (k, ((a, b), times)) in pairs.iter().take(MAX_NAMED).enumerate() {
             let before = if k == 0 { "," } else { ";" };
-            let a_name = parts.name(*a, &mut told);
+            let a_name = parts.name(*a, &mut told, &name);
             let b_name = if a == b {
                 "itself".into()
             } else {
-                parts.name(*b, &mut told)
+                parts.name(*b, &mut told, &name)
             };
             write!(f, "{before} {a_name} crosses {b_name} ({times}x)")?;
         }

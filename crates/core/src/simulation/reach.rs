@@ -209,8 +209,8 @@ const MIN_IMPULSE_STEP: f64 = 1e-4;
 
 /// Returns the share of a step of h (s) with which an adaptive method takes it again, if it has to:
 /// up to just after a particle touched an obstacle, a slide ended, a spring became too long,
-/// friction on a turning obstacle was too inaccurate, or surfaces would have met. A slide that went
-/// too far by less than the tolerance is accepted.
+/// contact on an obstacle that is curved or turns was too inaccurate, or surfaces would have met. A
+/// slide that went too far by less than the tolerance is accepted.
 pub(super) fn share_of_retry(settled: &Settled, h: f64, depths: Depths) -> Option<f64> {
     let Settled { met, grown, .. } = settled;
     if h <= MIN_RETRY_STEP {
@@ -225,8 +225,8 @@ pub(super) fn share_of_retry(settled: &Settled, h: f64, depths: Depths) -> Optio
     if *grown > MAX_STRAIN_GROWTH {
         return Some((0.5 * MAX_STRAIN_GROWTH / grown).max(MIN_RETRY_SHARE));
     }
-    if met.guarded.missed > depths.shallow {
-        return Some(share_of_missed(met.guarded.missed, depths).max(MIN_RETRY_SHARE));
+    if met.missed > depths.shallow {
+        return Some(share_of_missed(met.missed, depths).max(MIN_RETRY_SHARE));
     }
     // Contact of surfaces is the task of the repulsion force: its error controls the step, once the
     // step is so short that the safeguard does nothing.
@@ -234,8 +234,8 @@ pub(super) fn share_of_retry(settled: &Settled, h: f64, depths: Depths) -> Optio
     held.then_some((0.5 * met.guarded.first).max(MIN_RETRY_SHARE))
 }
 
-/// Returns the share of a step with which the error of friction on turning obstacles, which is
-/// proportional to its cube, is within the tolerance.
+/// Returns the share of a step with which the error of contact on obstacles that are curved or
+/// turn, which is proportional to its cube, is within the tolerance.
 fn share_of_missed(missed: f64, depths: Depths) -> f64 {
     0.9 * libm::cbrt(depths.shallow / missed)
 }
@@ -270,8 +270,8 @@ pub(super) fn limit_next(
     if *grown > 0.0 {
         limit(MAX_STRAIN_GROWTH / grown);
     }
-    if met.guarded.missed > 0.0 {
-        let share = share_of_missed(met.guarded.missed, depths);
+    if met.missed > 0.0 {
+        let share = share_of_missed(met.missed, depths);
         adaptive.try_at_most((h * share).max(MIN_RETRY_STEP));
     }
     if bulge > 0.0 {

@@ -55,6 +55,23 @@ fn a_particle_leaves_a_ball_where_the_equation_of_its_angle_says() {
     };
     let sphere = "[[sphere]]\ncenter = [0, 0, 0]";
     let capsule = "[[capsule]]\nfrom = [0, 0, -1]\nto = [0, 0, 1]";
+    // After each step, the reaction acts along the mean of the normals at both ends, of order 2.
+    let off = |angle: f64, control: Control, name: &str, right: f64| {
+        let scene = described(&scene(angle, if angle == 30.0 { 0.1 } else { 0.0 }, sphere));
+        let mut run = Simulation::new(scene, method(name), control).unwrap();
+        run.advance_to(1.0).unwrap();
+        (run.state()[0] - right).abs()
+    };
+    for (angle, right) in [(10.0, 1.202_006_61), (30.0, 1.571_934_53)] {
+        for (h, most) in [(1e-2, 3e-4), (1e-3, 3e-6)] {
+            let off = off(angle, Control::Step(h), "verlet", right);
+            assert!(off < most, "{angle}, {h}: {off}");
+        }
+    }
+    for (tolerance, most) in [(1e-6, 3e-5), (1e-9, 1e-6)] {
+        let off = off(10.0, Control::Tolerance(tolerance), "dprkn86", 1.202_006_61);
+        assert!(off < most, "{tolerance}: {off}");
+    }
     for shape in [sphere, capsule] {
         let smooth = [
             1.202_006_61,
@@ -165,9 +182,15 @@ fn a_slide_begins_in_the_direction_in_which_a_particle_is_driven() {
         -0.923_593_48,
         -0.005_153_28,
     ];
-    ends_at(scene, 0.6, right);
-    // Friction after each of some equal steps is of order 1.
-    for (h, most) in [(1e-3, 2e-3), (1e-4, 2e-4)] {
+    for name in ["dop853", "verner65", "dopri5"] {
+        for (tolerance, most) in [(1e-6, 2e-5), (1e-9, 2e-6)] {
+            let state = end(scene, name, tolerance, 0.6);
+            let off = state.iter().zip(right).map(|(a, b)| (a - b).abs());
+            let off = off.fold(0.0, f64::max);
+            assert!(off < most, "{name} {tolerance}: {off}");
+        }
+    }
+    for (h, most) in [(1e-2, 5e-4), (1e-3, 2.5e-4), (1e-4, 2e-5)] {
         let mut run =
             Simulation::new(described(scene), method("verlet"), Control::Step(h)).unwrap();
         run.advance_to(0.6).unwrap();
