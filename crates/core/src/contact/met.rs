@@ -204,8 +204,7 @@ impl Met<'_> {
             let velocity = row(v, n, i) - own;
             let outwards = velocity.dot(&nearest.normal);
             let inwards = outwards.min(0.0);
-            let reaction = (nearest.normal, -inwards);
-            let reaction = self.reaction(i, (at, velocity), reaction, noted);
+            let reaction = self.reaction(i, (at, velocity), nearest.normal, noted);
             for axis in self.axes.clone() {
                 x[axis * n + i] = c[axis] + nearest.point[axis];
                 if !is_held {
@@ -368,18 +367,19 @@ impl Met<'_> {
         }
     }
 
-    /// Returns the change of the velocity (m/s) by which the obstacle stops an approach (m/s) of
-    /// particle i along the normal `up`, where the particle ends at x (m) with the velocity
-    /// `relative` to the obstacle (m/s). If it touches from the beginning of the step, the reaction
-    /// acts along the mean of the normals at both ends: on a curved obstacle, or one that turns,
-    /// that is of order 2. Notes the correction, over the step.
+    /// Returns the change of the velocity (m/s) by which the obstacle stops the approach of particle
+    /// i along the normal `up`, where the particle ends at x (m) with the velocity `relative` to
+    /// the obstacle (m/s). If it touches from the beginning of the step, the reaction acts along
+    /// the mean of the normals at both ends: on a curved obstacle, or one that turns, that is of
+    /// order 2. Notes the correction, over the step.
     fn reaction(
         &self,
         i: usize,
         (x, relative): (Vector3<f64>, Vector3<f64>),
-        (up, approach): (Vector3<f64>, f64),
+        up: Vector3<f64>,
         noted: &mut Noted,
     ) -> Vector3<f64> {
+        let approach = -relative.dot(&up).min(0.0);
         let (straight, shape) = (up * approach, &self.obstacle.shape);
         let is_flat = shape.is_faceted() && self.after.orientation.is_none();
         let Some(x0) = self.x0.filter(|_| !is_flat && approach > 0.0) else {
