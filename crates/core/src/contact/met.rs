@@ -153,7 +153,6 @@ impl Met<'_> {
         surface: impl Fn(Vector3<f64>) -> Option<Nearest>,
     ) {
         let n = self.inverse_masses.len();
-        let (x, v) = y1.split_at_mut(3 * n);
         let surface = |d: Vector3<f64>| {
             surface(self.after.inwards(d)).map(|nearest| Nearest {
                 point: self.after.outwards(nearest.point),
@@ -164,97 +163,114 @@ impl Met<'_> {
         // A particle below a floor is always inside.
         let x0 = self.x0.filter(|_| self.obstacle.shape != Shape::Floor);
         for i in 0..n {
-            let d = Vector3::new(x[i] - c.x, x[n + i] - c.y, x[2 * n + i] - c.z);
-            let inside = surface(d);
-            let at = row(x, n, i);
+            let at = row(y1, n, i);
+            let inside = surface(at - c);
             let is_struck = self.struck.binary_search(&i).is_ok();
             let may_pass = !is_struck && x0.is_some_and(|x0| self.may_pass(row(x0, n, i), at));
             if inside.is_none() && !may_pass || self.inverse_masses[i] == 0.0 {
                 continue;
             }
-            let touch = (may_pass || !is_struck && self.restitution > 0.0)
-                .then(|| self.touch(i, [at, row(v, n, i)], inside.is_some()))
-                .flatten();
-            let first = touch.as_ref();
-            let passed = first.and_then(|touch| touch.passed(d, inside.as_ref()));
-            let Some(nearest) = passed.or(inside) else {
-                continue;
-            };
-            let is_held = noted.is_held(i);
-            let depth = nearest.normal.dot(&(nearest.point - d));
-            if let Some(rebound) = touch.and_then(|touch| self.rebound(i, row(v, n, i), &touch)) {
-                let share = 1.0 - rebound.left / self.span.h;
-                if is_held {
-                    noted.add_depth(depth, share);
-                    noted.rebounds.push(share);
-                    noted.held.push(rebound);
-                    continue;
-                }
-                let change = rebound.change();
-                let end = at + change * rebound.left;
-                // A particle that is inside again at the end of the step is moved out there.
-                if surface(end - c).is_none() {
-                    set_row(x, n, i, end);
-                    set_row(v, n, i, row(v, n, i) + change);
-                    noted.add_rebound(i, share, depth, change / self.inverse_masses[i]);
-                    continue;
-                }
-            }
-            let own = self.velocity(nearest.point);
-            let velocity = row(v, n, i) - own;
-            let outwards = velocity.dot(&nearest.normal);
-            let inwards = outwards.min(0.0);
-            let reaction = self.reaction(i, (at, velocity), nearest.normal, noted);
-            for axis in self.axes.clone() {
-                x[axis * n + i] = c[axis] + nearest.point[axis];
-                if !is_held {
-                    v[axis * n + i] += reaction[axis];
-                }
-            }
-            if let Some(x0) = self.x0 {
-                // Position if the obstacle had carried the particle along.
-                let carried = self.carried(row(x0, n, i));
-                let approach = nearest.normal.dot(&(carried - at));
-                if self.friction > 0.0 {
-                    let touched = touched([carried, at], [depth, approach]);
-                    let slip = across(row(x, n, i) - touched, nearest.normal);
-                    let held = match self.kept(slip, depth) {
-                        0.0 => surface(touched - c).map_or(touched, |nearest| c + nearest.point),
-                        kept => row(x, n, i) - slip * (1.0 - kept),
-                    };
-                    set_row(x, n, i, held);
-                }
-                let moved_in = depth.min(approach);
-                noted.add_depth(moved_in, 1.0 - moved_in / approach);
-            }
-            if self.friction > 0.0 {
-                let slip = across(velocity + reaction, nearest.normal);
-                let outwards = nearest.normal * outwards.max(0.0);
-                let kept = self.kept(slip, -inwards);
-                if kept == 0.0 {
-                    let stop = self.stop(i, slip, (nearest.normal, -inwards));
-                    if stop.way > noted.statistics.stop.way {
-                        noted.statistics.stop = stop;
-                    }
-                }
-                // A particle that sticks moves like the point at which it was left.
-                let own = if kept > 0.0 {
-                    own
-                } else {
-                    self.velocity(row(x, n, i) - c)
-                };
-                let left = self.left(i, (slip, kept), nearest.normal);
-                if !is_held {
-                    set_row(v, n, i, own + outwards + left);
-                }
-            }
+            self.meet(i, y1, noted, (inside, may_pass), &surface);
+        }
+    }
+
+    /// Resolves the contact of particle i, which is inside the surface at the end of the step, or
+    /// may have passed through it.
+    fn meet(
+        &self,
+        i: usize,
+        y1: &mut [f64],
+        noted: &mut Noted,
+        (inside, may_pass): (Option<Nearest>, bool),
+        surface: &dyn Fn(Vector3<f64>) -> Option<Nearest>,
+    ) {
+        let n = self.inverse_masses.len();
+        let (x, v) = y1.split_at_mut(3 * n);
+        let (c, at) = (self.after.place.position, row(x, n, i));
+        let d = at - c;
+        let is_struck = self.struck.binary_search(&i).is_ok();
+        let touch = (may_pass || !is_struck && self.restitution > 0.0)
+            .then(|| self.touch(i, [at, row(v, n, i)], inside.is_some()))
+            .flatten();
+        let first = touch.as_ref();
+        let passed = first.and_then(|touch| touch.passed(d, inside.as_ref()));
+        let Some(nearest) = passed.or(inside) else {
+            return;
+        };
+        let is_held = noted.is_held(i);
+        let depth = nearest.normal.dot(&(nearest.point - d));
+        if let Some(rebound) = touch.and_then(|touch| self.rebound(i, row(v, n, i), &touch)) {
+            let share = 1.0 - rebound.left / self.span.h;
             if is_held {
-                let impact = self.impact(i, nearest.normal, (velocity, 0.0));
-                noted.held.push(impact);
-            } else {
-                let change = row(v, n, i) - own - velocity;
-                noted.add_contact(i, change / self.inverse_masses[i]);
+                noted.add_depth(depth, share);
+                noted.rebounds.push(share);
+                noted.held.push(rebound);
+                return;
             }
+            let change = rebound.change();
+            let end = at + change * rebound.left;
+            // A particle that is inside again at the end of the step is moved out there.
+            if surface(end - c).is_none() {
+                set_row(x, n, i, end);
+                set_row(v, n, i, row(v, n, i) + change);
+                noted.add_rebound(i, share, depth, change / self.inverse_masses[i]);
+                return;
+            }
+        }
+        let own = self.velocity(nearest.point);
+        let velocity = row(v, n, i) - own;
+        let outwards = velocity.dot(&nearest.normal);
+        let inwards = outwards.min(0.0);
+        let reaction = self.reaction(i, (at, velocity), nearest.normal, noted);
+        for axis in self.axes.clone() {
+            x[axis * n + i] = c[axis] + nearest.point[axis];
+            if !is_held {
+                v[axis * n + i] += reaction[axis];
+            }
+        }
+        if let Some(x0) = self.x0 {
+            // Position if the obstacle had carried the particle along.
+            let carried = self.carried(row(x0, n, i));
+            let approach = nearest.normal.dot(&(carried - at));
+            if self.friction > 0.0 {
+                let touched = touched([carried, at], [depth, approach]);
+                let slip = across(row(x, n, i) - touched, nearest.normal);
+                let held = match self.kept(slip, depth) {
+                    0.0 => surface(touched - c).map_or(touched, |nearest| c + nearest.point),
+                    kept => row(x, n, i) - slip * (1.0 - kept),
+                };
+                set_row(x, n, i, held);
+            }
+            let moved_in = depth.min(approach);
+            noted.add_depth(moved_in, 1.0 - moved_in / approach);
+        }
+        if self.friction > 0.0 {
+            let slip = across(velocity + reaction, nearest.normal);
+            let outwards = nearest.normal * outwards.max(0.0);
+            let kept = self.kept(slip, -inwards);
+            if kept == 0.0 {
+                let stop = self.stop(i, slip, (nearest.normal, -inwards));
+                if stop.way > noted.statistics.stop.way {
+                    noted.statistics.stop = stop;
+                }
+            }
+            // A particle that sticks moves like the point at which it was left.
+            let own = if kept > 0.0 {
+                own
+            } else {
+                self.velocity(row(x, n, i) - c)
+            };
+            let left = self.left(i, (slip, kept), nearest.normal);
+            if !is_held {
+                set_row(v, n, i, own + outwards + left);
+            }
+        }
+        if is_held {
+            let impact = self.impact(i, nearest.normal, (velocity, 0.0));
+            noted.held.push(impact);
+        } else {
+            let change = row(v, n, i) - own - velocity;
+            noted.add_contact(i, change / self.inverse_masses[i]);
         }
     }
 
@@ -388,6 +404,7 @@ impl Met<'_> {
         let x0 = row(x0, self.inverse_masses.len(), i);
         let begun = shape.separation(self.before.inwards(x0 - self.before.place.position));
         let mean = (self.before.outwards(begun.normal) + up).try_normalize(0.0);
+        let mean = mean.filter(|mean| mean.dot(&up) > 0.0);
         let reaction = mean.map_or(straight, |mean| mean * (approach / mean.dot(&up)));
         // One that turns too far within the step would give energy.
         let touches = begun.distance.abs() <= TOUCHING_SHARE * (x - x0).norm();
