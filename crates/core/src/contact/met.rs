@@ -383,11 +383,11 @@ impl Met<'_> {
         }
     }
 
-    /// Returns the change of the velocity (m/s) by which the obstacle stops the approach of particle
-    /// i along the normal `up`, where the particle ends at x (m) with the velocity `relative` to
-    /// the obstacle (m/s). If it touches from the beginning of the step, the reaction acts along
-    /// the mean of the normals at both ends: on a curved obstacle, or one that turns, that is of
-    /// order 2. Notes the correction, over the step.
+    /// Returns the change of the velocity (m/s) by which the obstacle stops the approach of
+    /// particle i along the normal `up`, where the particle ends at x (m) with the velocity
+    /// `relative` to the obstacle (m/s). If it touches from the beginning of the step, the reaction
+    /// acts along the mean of the normals at both ends: on a curved obstacle, or one that turns,
+    /// that is of order 2. Notes the correction, over the step.
     fn reaction(
         &self,
         i: usize,
