@@ -15,7 +15,7 @@ fn end(text: &str, name: &str, tolerance: f64, until: f64) -> [f64; 6] {
 /// Checks that a scene's particle ends at this state.
 fn ends_at(text: &str, until: f64, right: [f64; 6]) {
     for name in ["dop853", "verner65", "dopri5"] {
-        for (tolerance, most) in [(1e-3, 2e-3), (1e-6, 4e-6), (1e-9, 2e-8)] {
+        for (tolerance, most) in [(1e-3, 2e-3), (1e-6, 4e-6), (1e-9, 1e-8)] {
             let state = end(text, name, tolerance, until);
             for (k, (a, b)) in state.iter().zip(right).enumerate() {
                 let off = (a - b).abs();
