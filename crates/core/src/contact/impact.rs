@@ -35,17 +35,21 @@ pub(super) struct Blow {
     /// Whether the sides move on freely afterwards: with a speed of restitution, or into the range
     /// of their repulsion.
     pub is_free: bool,
+    /// Velocity (m/s) of the side with a prescribed motion, if one has it, so that what moves gets
+    /// the work of the impulse at the relative velocity and at this one.
+    carried: Vector3<f64>,
     /// Impulse on the first side (N s).
     pub impulse: Vector3<f64>,
 }
 
 impl Blow {
     /// Creates a blow without an impulse yet.
-    pub fn new(contact: ContactPair, least: Least, is_free: bool) -> Self {
+    pub fn new(contact: ContactPair, least: Least, is_free: bool, carried: Vector3<f64>) -> Self {
         Self {
             contact,
             least,
             is_free,
+            carried,
             impulse: Vector3::zeros(),
         }
     }
@@ -65,11 +69,13 @@ impl Blow {
     /// Tells constraints of the impulse, if they pass it on.
     pub fn note(&self, changes: &Field, joints: &dyn Joints) {
         if self.contact.is_joined() {
-            joints.note(self.impulse.norm(), self.work(changes));
+            let work = self.work(changes) + self.impulse.dot(&self.carried);
+            joints.note(self.impulse.norm(), work);
         }
     }
 
-    /// Returns the work of the impulse (J), with the changes of velocities by all of them.
+    /// Returns the work of the impulse (J) at the relative velocity, with the changes of velocities
+    /// by all of them.
     fn work(&self, changes: &Field) -> f64 {
         let sum = self.least.before * 2.0 + self.contact.relative(changes);
         0.5 * self.impulse.dot(&sum)
@@ -183,6 +189,7 @@ impl Impact {
         let point = on_axis - (offset + normal * (radius - other)) * 0.5;
         let left = (1.0 - time) * h;
         let (mut before, mut arms) = (Vector3::zeros(), [None, None]);
+        let mut carried = Vector3::zeros();
         // Relative velocities at the beginning and the end of the step, without other impacts.
         let mut ends = [Vector3::zeros(); 2];
         for ((number, side), sign) in pair.kind.sides().into_iter().enumerate().zip([1.0, -1.0]) {
@@ -191,6 +198,9 @@ impl Impact {
                     let (i, weight) = (pair.points[k] as usize, weights[k]);
                     let own = [motion.v[i] - motion.flight.gain(i), motion.v[i]];
                     before += motion.velocity(i, time) * weight;
+                    if motion.inverse_masses[i] == 0.0 {
+                        carried -= motion.velocity(i, time) * weight;
+                    }
                     ends = [0, 1].map(|e| ends[e] + own[e] * weight);
                 }
                 continue;
@@ -206,6 +216,9 @@ impl Impact {
             let speeds = [v - motion.flight.gain(center), v];
             ends = [0, 1].map(|e| ends[e] + (speeds[e] + spins[e].cross(&lever)) * sign);
             before += (motion.velocity(center, time) + spin.cross(&lever)) * sign;
+            if motion.inverse_masses[center] == 0.0 {
+                carried -= motion.velocity(center, time) * sign;
+            }
             arms[number] = Some(Arm {
                 solid: k,
                 lever,
@@ -239,7 +252,7 @@ impl Impact {
         };
         Some(Self {
             candidate: *pair,
-            blow: Blow::new(contact, least, is_free),
+            blow: Blow::new(contact, least, is_free, carried),
             left,
         })
     }

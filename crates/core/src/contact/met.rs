@@ -62,6 +62,8 @@ pub(super) struct PointImpact {
     pub particle: usize,
     pub normal: Vector3<f64>,
     pub least: Least,
+    /// Velocity of the obstacle there (m/s).
+    pub carried: Vector3<f64>,
     /// Time that remains of the step after a rebound (s).
     pub left: f64,
 }
@@ -266,7 +268,7 @@ impl Met<'_> {
             }
         }
         if is_held {
-            let impact = self.impact(i, nearest.normal, (velocity, 0.0));
+            let impact = self.impact(i, nearest.normal, [velocity, own], 0.0);
             noted.held.push(impact);
         } else {
             let change = row(v, n, i) - own - velocity;
@@ -351,7 +353,8 @@ impl Met<'_> {
             ref pose,
             ..
         } = *touch;
-        let relative = touch.speed - velocity(pose, point);
+        let carried = velocity(pose, point);
+        let relative = touch.speed - carried;
         let [begun, ended] = [(touch.begun, &self.before), (v, &self.after)]
             .map(|(v, pose)| v - velocity(pose, point));
         let press = (begun - ended).dot(&normal) / h;
@@ -359,17 +362,19 @@ impl Met<'_> {
         let speed = rebound_speed(restitution, approach, press, h);
         (speed > 0.0).then(|| PointImpact {
             left: (1.0 - share) * h,
-            ..self.impact(i, normal, (relative, speed))
+            ..self.impact(i, normal, [relative, carried], speed)
         })
     }
 
-    /// Returns the impact of particle i at the end of the step, along a normal, with the relative
-    /// velocity before it and the least speed along the normal after it (m/s).
+    /// Returns the impact of particle i at the end of the step, along a normal, with its velocity
+    /// relative to the obstacle before it, the obstacle's velocity, and the least speed along the
+    /// normal after it (m/s).
     fn impact(
         &self,
         i: usize,
         normal: Vector3<f64>,
-        (before, speed): (Vector3<f64>, f64),
+        [before, carried]: [Vector3<f64>; 2],
+        speed: f64,
     ) -> PointImpact {
         PointImpact {
             particle: i,
@@ -379,6 +384,7 @@ impl Met<'_> {
                 speed,
                 friction: self.friction,
             },
+            carried,
             left: 0.0,
         }
     }

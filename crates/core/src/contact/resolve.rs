@@ -183,7 +183,8 @@ impl ContactPhase {
                 }
                 let normal = pose.outwards(seen.normal);
                 let point = d - normal * seen.distance;
-                let relative = row(v, n, i) - velocity(&pose, point);
+                let carried = velocity(&pose, point);
+                let relative = row(v, n, i) - carried;
                 let approach = -relative.dot(&normal);
                 if approach <= 0.0 {
                     continue;
@@ -207,6 +208,7 @@ impl ContactPhase {
                             speed,
                             friction: obstacle.friction,
                         },
+                        carried,
                         left: 0.0,
                     });
                     continue;
@@ -351,7 +353,8 @@ fn pass_on(noted: &mut Noted, inverse_masses: &[f64], y1: &mut [f64]) {
                 ContactPair::with_arms(points, impact.normal, inverse_masses, &[None, None]);
             let is_smooth = impact.least.friction == 0.0;
             contact.join(joined, is_smooth, inverse_masses, &[]);
-            Blow::new(contact, impact.least, impact.least.speed > 0.0)
+            let is_free = impact.least.speed > 0.0;
+            Blow::new(contact, impact.least, is_free, impact.carried)
         })
         .collect();
     let mut before = Field::still(n, 0);
