@@ -91,6 +91,13 @@ fn loosen_where(network: &mut Network, y: &[f64], is_loose: impl Fn(f64) -> bool
     }
 }
 
+/// Makes the taut ropes slack, and leaves the ends of joints, whose ends clearly approach in the
+/// state y.
+fn loosen_approaching(network: &mut Network, y: &[f64]) {
+    let none = MAX_DRIFT * fastest(network, y);
+    loosen_where(network, y, |rate| rate < -none);
+}
+
 /// Applies the impacts of the ropes that tighten in the state y at time t (s), if there are any.
 pub(crate) fn tighten(network: &mut Network, t: f64, y: &mut [f64], least: Least) -> Option<Jump> {
     let mut all: Option<Jump> = None;
@@ -189,22 +196,22 @@ fn strike(
             Moved::Nothing | Moved::Particle(_) => pushed.change.norm(),
         });
     }
-    let v = &y[3 * n..6 * n];
     if struck.is_empty() && jump.change <= MAX_DRIFT * fastest(network, y) {
-        return Jump {
-            change: 0.0,
-            ..jump
-        };
-    }
-    for pushed in &pushed {
-        if let Moved::Particle(i) = pushed.moved
-            && network.particles.inverse_masses()[i] == 0.0
-        {
-            jump.work -= 0.5 * pushed.impulse.dot(&(row(before, n, i) + row(v, n, i)));
+        jump.change = 0.0;
+    } else {
+        let v = &y[3 * n..6 * n];
+        for pushed in &pushed {
+            if let Moved::Particle(i) = pushed.moved
+                && network.particles.inverse_masses()[i] == 0.0
+            {
+                jump.work -= 0.5 * pushed.impulse.dot(&(row(before, n, i) + row(v, n, i)));
+            }
         }
+        add(network, &pushed, y);
+        network.hold(t, y);
     }
-    add(network, &pushed, y);
-    network.hold(t, y);
+    // A rope does not push: it lets its ends approach.
+    loosen_approaching(network, y);
     jump
 }
 
@@ -341,8 +348,7 @@ pub(crate) fn slacken(network: &mut Network, t: f64, y: &[f64]) -> u64 {
     if !has_ropes(network) {
         return 0;
     }
-    let none = MAX_DRIFT * fastest(network, y);
-    loosen_where(network, y, |rate| rate < -none);
+    loosen_approaching(network, y);
     let_go(network, t, y)
 }
 
