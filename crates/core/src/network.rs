@@ -21,7 +21,9 @@ mod tearing;
 pub(crate) use attraction::{attract, let_go, mass_behind};
 pub use crossings::untangle;
 pub use elements::Element;
-pub(crate) use evaluation::{add_wind, energy_of_errors, has_motors, is_conservative, is_loose};
+pub(crate) use evaluation::{
+    add_wind, constraint_power, energy_of_errors, has_motors, is_conservative, is_loose,
+};
 pub(crate) use holding::is_nearly_singular;
 pub(crate) use holding::{contradiction, project, project_velocities};
 pub(crate) use jump::{Jump, Least, fit, tighten};

@@ -190,6 +190,15 @@ impl Constraints {
         })
     }
 
+    /// Returns the power (W) of the forces that were found last, on all that they move, also pins.
+    /// It is zero where velocities fit the constraints.
+    pub fn power(&self) -> f64 {
+        self.scratch.lend(|system| {
+            let powers = system.rows.iter().map(|row| row.unscaled() * row.rate);
+            powers.sum()
+        })
+    }
+
     /// Adds the torques by a row of a joint about the centres of its bodies.
     fn add_torques(&self, system: &System, row: &Row, ends: [Held; 2], torques: &mut [f64]) {
         for end in ends {
@@ -312,6 +321,7 @@ impl Constraints {
                 }
                 fill(row, ends, turnings, &equation);
                 let (rate, equation) = (equation.rate, Equation::from(equation));
+                row.rate = rate;
                 row.set_target(target(owner, row, &equation, rate, vectors), weights);
                 return;
             }
@@ -343,6 +353,7 @@ impl Constraints {
                     equation.bend += gradient.dot(&lever.inwards) * sign;
                 }
             }
+            row.rate = rate;
             let target = target(owner, row, &equation, rate, vectors);
             row.set_target(target, weights);
         });

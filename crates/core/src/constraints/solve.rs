@@ -296,6 +296,8 @@ pub(super) struct Row {
     parts: [(usize, Vector3<f64>); 4],
     used: usize,
     scale: f64,
+    /// Rate of change of its equation (m/s), which it should keep at zero.
+    pub rate: f64,
     /// Its element of J W J^T lambda in the solution.
     pub target: f64,
     /// Multiplier lambda.

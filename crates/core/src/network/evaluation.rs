@@ -356,6 +356,12 @@ pub(crate) fn has_motors(network: &Network) -> bool {
     !network.bodies.motors().is_empty()
 }
 
+/// Returns the power (W) of the constraints at the last evaluation: where velocities do not fit
+/// them, their forces work, which no exact motion does.
+pub(crate) fn constraint_power(network: &Network) -> f64 {
+    network.constraints.power()
+}
+
 /// Returns whether the forces conserve energy: there is no damping, no wind, no motor and no
 /// prescribed motion, and no spring is shortened or breaks. Contact with obstacles is left out.
 pub(crate) fn is_conservative(network: &Network) -> bool {

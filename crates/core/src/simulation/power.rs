@@ -15,7 +15,7 @@ use crate::contact::Obstacle;
 use crate::elements::force::{Force, Matter};
 use crate::energy::Energy;
 use crate::error::Error;
-use crate::network::{Network, add_wind, has_motors, next_known_time};
+use crate::network::{Network, add_wind, constraint_power, has_motors, next_known_time};
 use crate::path::Path;
 use crate::spring::Spring;
 use crate::system::{Mechanics, ParticleSystem};
@@ -412,7 +412,8 @@ impl TotalWork {
     }
 
     /// Returns the rate (W) at which the energy of the exact motion grows at y at time t (s), by
-    /// its change from a moment (s) before to one after.
+    /// its change from a moment (s) before to one after. Constraints take no part in it but by what
+    /// moves their ends: where velocities do not fit them, their work is an error of the method.
     fn power_at(&mut self, network: &Network, (t, moment): (f64, f64), y: &[f64]) -> f64 {
         let [state, f, _] = &mut self.scratch;
         network.eval_f(t, y, f);
@@ -421,7 +422,7 @@ impl TotalWork {
             state.extend(y.iter().zip(&*f).map(|(y, f)| y + moment * f));
             energy_of(network, t + moment, state).total()
         };
-        (at(moment) - at(-moment)) / (2.0 * moment)
+        (at(moment) - at(-moment)) / (2.0 * moment) - constraint_power(network)
     }
 }
 

@@ -346,3 +346,28 @@ fn a_ball_on_a_box_that_jumps_gains_nothing() {
         }
     }
 }
+
+/// What a method adds to rods that it stretches is told, and nothing else is.
+#[test]
+fn rods_put_in_no_work() {
+    for (solver, h, until) in [
+        ("s", 0.002, 3.0),
+        ("s", 0.002, 10.0),
+        ("m", 0.02, 10.0),
+        ("t", 0.02, 10.0),
+    ] {
+        let (run, end) = run("double-pendulum", solver, h, until);
+        end.unwrap();
+        let begun = Simulation::new(scene("double-pendulum"), run.method(), run.control()).unwrap();
+        let gained = run.energy().unwrap().total() - begun.energy().unwrap().total();
+        let told = run.gained().map(|gain| gain.energy);
+        // The largest gain until then is told, if it is notable.
+        match told {
+            Some(told) => assert!(
+                told > gained - 0.1 && told < 1.5 * gained,
+                "{solver} {until}: {told} {gained}"
+            ),
+            None => assert!(gained < 5.0, "{solver} {until}: {gained}"),
+        }
+    }
+}
