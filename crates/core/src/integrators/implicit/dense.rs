@@ -3,7 +3,7 @@
 
 use super::jacobian::Jacobian;
 use super::lu::Lu;
-use super::newton::{Changes, NOISE, Newton};
+use super::newton::{Changes, NOISE, Newton, TOLERANCE};
 use crate::error::Error;
 use crate::integrators::integrator::check_dim;
 use crate::integrators::sweep::{add_scaled, scaled_sum};
@@ -96,7 +96,7 @@ impl Dense {
                 Some(_) => (self.solution.len() as f64).sqrt(),
                 None => self.jacobian.norm(y),
             };
-            changes.add(change, size, 0.0);
+            changes.add(change, [size, TOLERANCE * size], 0.0);
             if changes.are_over(NOISE) {
                 return Ok(work);
             }

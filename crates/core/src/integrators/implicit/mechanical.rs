@@ -28,8 +28,10 @@ const SETTLED_ITERATIONS: u32 = 6;
 const MAX_OVERSHOOT: f64 = 0.5;
 /// Largest number of times that a change is shortened.
 const MAX_SHORTENINGS: u32 = 12;
-/// Relative position gap below which it counts as rounding error.
+/// Relative change of a position below which it counts as rounding error.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Change of the velocities in an iteration, over their change in the stage, that is negligible.
+const NEGLIGIBLE_SHARE: f64 = 1e-8;
 
 /// Solver of the implicit stages of a mechanical system, with its scratch.
 pub(super) struct Mechanical {
@@ -121,7 +123,9 @@ impl Mechanical {
                 return Ok(work);
             }
             let size = norm(v) + norm(x) / a.abs();
-            changes.add(change, size, residual);
+            // Positions may be large, wherever the scene is: they count by their rounding alone.
+            let none = NEGLIGIBLE_SHARE * distance(v, bv) + ROUNDING * size;
+            changes.add(change, [size, none], residual);
             if changes.are_over(1e3 * TOLERANCE) {
                 if newton == Newton::Full {
                     project(mechanics, [x, v]);
@@ -368,6 +372,12 @@ impl Mechanical {
                 .solve(mechanics, &self.rhs, &mut self.dv, tolerance),
         }
     }
+}
+
+/// Returns the norm of the difference of two vectors.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
+    squares.sum::<f64>().sqrt()
 }
 
 /// Returns the largest distance of a row of an n x 3 matrix from their mean.

@@ -157,6 +157,8 @@ pub(super) struct Changes {
     rate: f64,
     /// Size of the state after the last change.
     size: f64,
+    /// Change that counts as negligible.
+    none: f64,
     /// Relative residual of the linear system of the last change.
     residual: f64,
 }
@@ -169,25 +171,27 @@ impl Changes {
             last: f64::NAN,
             rate: f64::INFINITY,
             size: f64::NAN,
+            none: f64::NAN,
             residual: 0.0,
         }
     }
 
-    /// Adds a change that led to a state of this size, and the relative residual of its linear
-    /// system.
-    pub fn add(&mut self, change: f64, size: f64, residual: f64) {
+    /// Adds a change that led to a state of this size, the change that is negligible there, and the
+    /// relative residual of its linear system.
+    pub fn add(&mut self, change: f64, [size, none]: [f64; 2], residual: f64) {
         if self.first.is_nan() {
             self.first = change;
         } else {
             self.rate = change / self.last;
         }
-        (self.last, self.size, self.residual) = (change, size, residual);
+        (self.last, self.residual) = (change, residual);
+        (self.size, self.none) = (size, none);
     }
 
     /// Returns the relative residual for the linear system of the next change.
     pub fn forcing(&self) -> f64 {
         // Divided by ten, because the next change may be larger than predicted.
-        let enough = 0.1 * RESIDUAL_SHARE * TOLERANCE * self.size / (self.last * self.rate);
+        let enough = 0.1 * RESIDUAL_SHARE * self.none / (self.last * self.rate);
         if self.foretell && enough >= LAST_RESIDUALS[0] {
             enough.min(LAST_RESIDUALS[1])
         } else {
@@ -200,9 +204,9 @@ impl Changes {
         self.rate.is_finite().then_some(self.rate <= MAX_KEPT_RATE)
     }
 
-    /// Returns whether the last change, or the predicted next one, is negligible relative to the
-    /// state and its linear system solved accurately enough; or whether changes no longer shrink,
-    /// if the last one is below `noise`.
+    /// Returns whether the last change, or the predicted next one, is negligible and its linear
+    /// system solved accurately enough; or whether changes no longer shrink, if the last one is
+    /// below `noise`, relative to the state.
     pub fn are_over(&self, noise: f64) -> bool {
         let shrinks = if self.foretell {
             self.rate.min(1.0)
@@ -210,7 +214,7 @@ impl Changes {
             1.0
         };
         let stay = self.rate.is_finite() && self.rate >= 0.5;
-        let none = TOLERANCE * self.size;
+        let none = self.none;
         self.last * shrinks <= none && self.last * self.residual <= RESIDUAL_SHARE * none
             || stay && self.last <= noise * self.size
     }
