@@ -1,9 +1,10 @@
 //! Charts and choices of systems with published states at their ends: true, and of few calls of f.
 
-use std::sync::atomic::Ordering;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use a3_core::accuracy::Metric;
-use a3_core::{Scene, Simulation, integrators};
+use a3_core::{Ode, Scene, Simulation, integrators};
 use a3_lab::chart::{Chart, ChartOptions, Record, chart};
 use a3_lab::choose::{ChooseOptions, Goal, choose};
 
@@ -95,5 +96,28 @@ fn choices_are_true_and_cheap() {
         let apart = run.state().iter().zip(&end).map(|(y, end)| (y - end).abs());
         assert!(apart.fold(0.0, f64::max) < 1e-4 * largest, "{what}");
         assert!(count < 3_000_000, "{what}: {count}");
+    }
+}
+
+/// On a number that follows a cosine, a choice costs no more than 50,000 calls, however stiff the
+/// number is, also where explicit methods would do.
+#[test]
+fn choices_are_cheap_at_any_stiffness() {
+    for k in [0.1, 1.0, 10.0, 30.0, 100.0, 1e3, 1e5, 1e8] {
+        let calls = Arc::new(AtomicU64::new(0));
+        let counter = calls.clone();
+        let system = Ode::new(1, move |t: f64, y: &[f64], dydt: &mut [f64]| {
+            counter.fetch_add(1, Ordering::Relaxed);
+            dydt[0] = -k * (y[0] - t.cos());
+        });
+        let scene = Scene::new("follower", system.unwrap(), vec![0.0]);
+        let options = ChooseOptions::new(Goal::Error(1e-4));
+        let choice = choose(&scene, &[], &options, &()).unwrap();
+        let (best, count) = (choice.best(), calls.load(Ordering::Relaxed));
+        println!(
+            "{k:e}: {} {}, {count} calls",
+            best.method.name, best.control
+        );
+        assert!(count < 50_000, "{k:e}: {count}");
     }
 }

@@ -24,7 +24,8 @@ const MAX_STEPS: u64 = 1_000_000;
 
 /// Cost of a method, over that of the second cheapest so far, at which it is given up.
 const MAX_COST_RATIO: f64 = 2.0;
-/// The same in a small scene, where methods spend most of their time outside evaluations.
+/// The same if computing times count in a small scene, where methods spend most of their time
+/// outside evaluations.
 const SMALL_MAX_COST_RATIO: f64 = 5.0;
 /// [Work](crate::Model::work) of an evaluation below which a scene is small.
 const SMALL_WORK: f64 = 100.0;
@@ -44,6 +45,18 @@ pub enum SetBy {
     Stability,
     /// No larger one was tried.
     Nothing,
+}
+
+/// Demand on the methods.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Demand {
+    /// Error that counts.
+    pub metric: Metric,
+    /// Largest error, in the unit of the metric.
+    pub error: f64,
+    /// Whether the caller will compare computing times, so that methods count that take more
+    /// evaluations.
+    pub timed: bool,
 }
 
 /// Run of a search, measured in any way.
@@ -76,8 +89,8 @@ pub struct Candidate<T = Outcome> {
 /// in the unit of the metric; the cheapest method comes first.
 ///
 /// The search gives up a method that would cost more than twice as much as the second cheapest so
-/// far, or five times as much in small scenes. `begin` is called with each method before its runs.
-/// Returns `None` if `go_on` returned false.
+/// far. `begin` is called with each method before its runs. Returns `None` if `go_on` returned
+/// false.
 ///
 /// The cheapest methods for an error of 1e-8 on a rotation y' = (-y2, y1), over ten seconds:
 ///
@@ -115,11 +128,17 @@ pub fn choose(
     begin: impl FnMut(&'static Method),
 ) -> Result<Option<Vec<Candidate>>, Error> {
     let methods: Vec<_> = METHODS.iter().collect();
-    choose_among(&methods, scene, reference, metric, error, go_on, begin)
+    let demand = Demand {
+        metric,
+        error,
+        timed: false,
+    };
+    choose_among(&methods, scene, reference, demand, go_on, begin)
 }
 
 /// Does what [`choose`] does, among these methods. Those that do not support the scene are left
-/// out.
+/// out. If computing times count, the search gives up a method of a small scene only at five times
+/// the cost of the second cheapest so far.
 ///
 /// # Errors
 /// The scene cannot be run, or the metric needs particles that it does not have.
@@ -127,14 +146,14 @@ pub fn choose_among(
     methods: &[&'static Method],
     scene: &Scene,
     reference: &Reference,
-    metric: Metric,
-    error: f64,
+    demand: Demand,
     go_on: GoOn,
     mut begin: impl FnMut(&'static Method),
 ) -> Result<Option<Vec<Candidate>>, Error> {
+    let metric = demand.metric;
     metric.check(&scene.model)?;
     // The reference's own uncertainty is part of the error that is allowed.
-    let error = error - metric.of(&reference.floor);
+    let error = demand.error - metric.of(&reference.floor);
     let measure = |method, control| -> Result<_, Error> {
         let outcome = measure(scene, method, control, reference, go_on)?;
         Ok(outcome.map(|outcome| Trial {
@@ -149,7 +168,7 @@ pub fn choose_among(
         }))
     };
     let is_small = scene.model.work() < SMALL_WORK;
-    let max_ratio = if is_small {
+    let max_ratio = if is_small && demand.timed {
         SMALL_MAX_COST_RATIO
     } else {
         MAX_COST_RATIO
@@ -292,11 +311,11 @@ impl<M> Search<'_, M> {
                 return Ok(Found::Stopped);
             };
             let ratio = trial.error / self.error;
-            if ratio <= 1.0 {
-                break (control, trial);
-            }
             if trial.work > self.max_cost && trial.error.is_finite() {
                 return Ok(Found::Nothing);
+            }
+            if ratio <= 1.0 {
+                break (control, trial);
             }
             let bound = self.predicted_bound(fails, (control.value(), ratio));
             fails = Some((control.value(), ratio));

@@ -31,7 +31,7 @@ const MIN_CALMING: f64 = 1.5;
 /// Largest displacement of a coordinate between the two runs at the start, over the scene's radius.
 const SEPARATION: f64 = 1e-8;
 /// Tolerance of runs that take one, over the separation: their errors part them by less.
-const TOLERANCE_SHARE: f64 = 1e-2;
+const TOLERANCE_SHARE: f64 = 0.1;
 /// Number of comparisons of both runs between one round time and the next.
 const CHECKS_PER_ROUND: u32 = 10;
 /// Horizons to choose from: round numbers (s).
@@ -90,12 +90,13 @@ pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>
     let mut step = (MAX_STEP_SHARE * limit).min(longest / MIN_STEPS);
     let longest = longest.min(until);
     let touches = scene.model.network().is_some_and(Network::can_touch);
-    let Some((is_stiff, _)) = is_stiff(scene, longest, go_on)? else {
+    let tolerance = TOLERANCE_SHARE * SEPARATION;
+    let Some((is_stiff, _)) = is_stiff(scene, longest, tolerance, go_on)? else {
         return Ok(None);
     };
     // The time of a system of one's own has any unit.
     if is_stiff || is_own {
-        let control = Control::Tolerance(TOLERANCE_SHARE * SEPARATION);
+        let control = Control::Tolerance(tolerance);
         let found = TwoRuns::start(scene, accurate(is_stiff)?, control, longest, go_on)?;
         return Ok(found.map(|runs| runs.horizon));
     }

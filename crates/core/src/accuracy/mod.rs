@@ -12,7 +12,7 @@ mod shown;
 mod snapshot;
 mod trajectory;
 
-pub use choose::{Candidate, SetBy, Trial, choose, choose_among, choose_by};
+pub use choose::{Candidate, Demand, SetBy, Trial, choose, choose_among, choose_by};
 pub use choose::{coarser, ladder};
 pub use frames::{Frames, GoOn};
 pub use horizon::{Horizon, horizon};

@@ -125,7 +125,8 @@ impl Reference {
     ) -> Result<Option<Self>, Error> {
         precision.metric.check(&scene.model)?;
         let scope = scope.checked(&scene.model)?;
-        let Some((is_stiff, work)) = is_stiff(scene, frames.until, go_on)? else {
+        let needed = precision.tolerance();
+        let Some((is_stiff, work)) = is_stiff(scene, frames.until, needed, go_on)? else {
             return Ok(None);
         };
         let mut making = Making {
@@ -276,7 +277,7 @@ impl Making<'_> {
         let mut tolerance = if self.precision.max_work.is_finite() {
             loosest
         } else {
-            self.precision.uncertainty.clamp(tightest, loosest)
+            self.precision.tolerance()
         };
         tolerance *= RATIO;
         let is_own = self.scene.model.network().is_none();
@@ -451,6 +452,12 @@ impl Precision {
         uncertainty: 0.0,
         max_work: f64::INFINITY,
     };
+
+    /// Returns the tolerance that is expected to reach it.
+    fn tolerance(&self) -> f64 {
+        let (loosest, tightest) = TOLERANCES;
+        self.uncertainty.clamp(tightest, loosest)
+    }
 }
 
 /// Order of the methods that are extrapolated.

@@ -83,7 +83,7 @@ impl Motion {
     /// # Errors
     /// The scene cannot be run.
     pub fn of(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<Self>, Error> {
-        let Some((is_stiff, _)) = is_stiff(scene, HORIZON, &go_on)? else {
+        let Some((is_stiff, _)) = is_stiff(scene, HORIZON, TOLERANCE, &go_on)? else {
             return Ok(None);
         };
         let accurate = accurate(is_stiff)?;

@@ -368,26 +368,39 @@ impl Budget {
     pub fn take(&self, run: &mut Simulation, steps: u64) -> Option<bool> {
         let (mut left, mut portion) = (steps, 1);
         while left > 0 {
-            let before = cost(run);
-            let taken = run.take_steps(portion);
-            let Ok(holds) = succeeded(taken).map_err(|failure| self.failure.replace(Some(failure)))
-            else {
-                return None;
-            };
-            let work = cost(run) - before;
-            self.spent.set(self.spent.get() + work);
-            if !holds {
+            let before = self.spent.get();
+            if !self.spend(run, |run| run.take_steps(portion))? {
                 return Some(false);
             }
-            if self.spent.get() > self.allowed.get() {
-                self.limits.set(true);
-                return None;
-            }
             left -= portion;
+            let work = self.spent.get() - before;
             let room = CHECK_SHARE * self.most * portion as f64 / work;
             portion = (room as u64).clamp(1, left.max(1));
         }
         Some(true)
+    }
+
+    /// Advances a run to a time (s). Returns what [`take`](Self::take) returns.
+    pub fn reach(&self, run: &mut Simulation, time: f64) -> Option<bool> {
+        self.spend(run, |run| run.advance_to(time))
+    }
+
+    /// Advances a run, and counts the work.
+    fn spend(
+        &self,
+        run: &mut Simulation,
+        advance: impl FnOnce(&mut Simulation) -> Result<(), Error>,
+    ) -> Option<bool> {
+        let before = cost(run);
+        let advanced =
+            succeeded(advance(run)).map_err(|failure| self.failure.replace(Some(failure)));
+        self.spent.set(self.spent.get() + cost(run) - before);
+        let holds = advanced.ok()?;
+        if holds && self.spent.get() > self.allowed.get() {
+            self.limits.set(true);
+            return None;
+        }
+        Some(holds)
     }
 }
 

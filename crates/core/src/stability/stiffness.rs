@@ -7,33 +7,37 @@ use crate::scene::Scene;
 /// Tolerances of both runs: the second one if Radau fails with the first, whose errors may lead to
 /// another solution.
 const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
-/// Work of the explicit method over that of the implicit one, from which on a system is stiff. To a
-/// tolerance of 1e-12 instead, the explicit method of order 8 takes 10^(6/8) = 6 times as many
-/// steps, if stiffness does not limit them, and the implicit one, whose estimate has order 3,
-/// 10^(6/4) = 32 times as many.
-const STIFF_RATIO: f64 = 8.0;
+/// Work of the explicit method over that of the implicit one at the first tolerance, from which on
+/// the implicit one is cheaper there for sure.
+const STIFF_RATIO: f64 = 1.4;
+/// Power of the tolerance with which that ratio falls: the explicit method of order 8 takes
+/// tolerance^(-1/8) times as many steps, if stiffness does not limit them, and the implicit one,
+/// whose estimate has order 3, tolerance^(-1/4) times as many.
+const RATIO_POWER: f64 = 1.0 / 4.0 - 1.0 / 8.0;
 
 /// Largest work of all runs of a system of one's own (evaluations), whose time may be of any
 /// length.
 const MOST: f64 = 1e6;
 
-/// Returns whether Radau reaches a time (s) with less than an eighth of the work of DOP853, and the
-/// work of both. No system is stiff that Radau does not support, and one with a mass matrix is,
-/// which no explicit method supports. `None` if `go_on` returned false.
+/// Returns whether Radau is expected to reach a time (s) to a tolerance with less work than DOP853,
+/// and the work of finding that out. No system is stiff that Radau does not support, and one with a
+/// mass matrix is, which no explicit method supports. `None` if `go_on` returned false.
 ///
 /// # Errors
 /// A function of the system failed, or a system of one's own takes more than a million evaluations.
 pub(crate) fn is_stiff(
     scene: &Scene,
     until: f64,
+    tolerance: f64,
     go_on: &dyn Fn() -> bool,
 ) -> Result<Option<(bool, Work)>, Error> {
     let mut work = Work::default();
+    let ratio = STIFF_RATIO * (TOLERANCES[0] / tolerance).max(1.0).powf(RATIO_POWER);
     if !scene.model.system().mass_matrix().is_empty() {
         return Ok(Some((true, work)));
     }
     for tolerance in TOLERANCES {
-        match race(scene, until, tolerance, &mut work, go_on)? {
+        match race(scene, until, (tolerance, ratio), &mut work, go_on)? {
             None => return Ok(None),
             Some(Won::Explicit) => return Ok(Some((false, work))),
             Some(Won::Implicit) => return Ok(Some((true, work))),
@@ -51,11 +55,12 @@ enum Won {
     Neither,
 }
 
-/// Lets both methods race at a tolerance, and adds their work. `None` if `go_on` returned false.
+/// Lets both methods race at a tolerance, the explicit one with `ratio` times the work of the
+/// implicit one, and adds their work. `None` if `go_on` returned false.
 fn race(
     scene: &Scene,
     until: f64,
-    tolerance: f64,
+    (tolerance, ratio): (f64, f64),
     work: &mut Work,
     go_on: &dyn Fn() -> bool,
 ) -> Result<Option<Won>, Error> {
@@ -76,7 +81,7 @@ fn race(
         if !go_on() {
             return Ok(None);
         }
-        let turn = usize::from(racers[0].work > STIFF_RATIO * racers[1].work);
+        let turn = usize::from(racers[0].work > ratio * racers[1].work);
         let arrived = racers[turn].step(scene, until, work);
         match arrived {
             Ok(false) if scene.model.network().is_none() && work.total() > MOST => {

@@ -3,7 +3,7 @@
 //! Python.
 
 use crate::common::{described, method};
-use a3_core::accuracy::{Frames, Metric, Reference, choose_among};
+use a3_core::accuracy::{Demand, Frames, Metric, Reference, choose_among};
 use a3_core::{Control, Simulation};
 
 /// Scene, the time (s) at which it is compared, and the positions there (m).
@@ -104,14 +104,18 @@ fn references_of_rebounds_know_their_errors() {
         assert!(floor < 1e-10, "{floor:e}\n{}", case.scene);
         assert!(error < floor + 1e-13, "{error:e} {floor:e}\n{}", case.scene);
         let methods = ["dop853", "verner65", "rkf45"].map(method);
-        let (metric, most) = (Metric::Position, 1e-6);
-        let found = choose_among(&methods, &scene, &reference, metric, most, &go_on, |_| {});
+        let demand = Demand {
+            metric: Metric::Position,
+            error: 1e-6,
+            timed: false,
+        };
+        let found = choose_among(&methods, &scene, &reference, demand, &go_on, |_| {});
         let found = found.unwrap().unwrap();
         assert!(!found.is_empty());
         for choice in found {
             let error = case.error_of(choice.method.name, choice.control);
             assert!(
-                error <= 3f64.sqrt() * most,
+                error <= 3f64.sqrt() * demand.error,
                 "{} {error:e}",
                 choice.method.name
             );

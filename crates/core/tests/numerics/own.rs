@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use approx::assert_relative_eq;
 
 use crate::common::{method, reference};
-use a3_core::accuracy::{Frames, Metric, Reference, choose_among, measure};
+use a3_core::accuracy::{Demand, Frames, Metric, Reference, choose_among, measure};
 use a3_core::integrators::{METHODS, View, find};
 use a3_core::stability::{largest_step, spectrum};
 use a3_core::{
@@ -420,15 +420,12 @@ fn own_methods_are_measured_and_chosen() {
     assert_relative_eq!(error(0.005), exact, max_relative = 0.01);
 
     let among = [heun, euler("own-cheap").register(), method("euler")];
-    let found = choose_among(
-        &among,
-        &scene,
-        &reference,
-        Metric::State,
-        1e-3,
-        &go_on,
-        |_| {},
-    );
+    let demand = Demand {
+        metric: Metric::State,
+        error: 1e-3,
+        timed: false,
+    };
+    let found = choose_among(&among, &scene, &reference, demand, &go_on, |_| {});
     let found = found.unwrap().unwrap();
     assert_eq!(found[0].method.name, "own-heun");
     assert!(found[0].outcome.errors.state <= 1e-3);

@@ -1,8 +1,8 @@
 //! A choice as a value: the methods that serve best, each with its step or tolerance.
 
 use a3_core::accuracy::{
-    Candidate, Frames, Metric, Precision, Reference, Scope, SetBy, choose_among, ladder, measure,
-    shown,
+    Candidate, Demand, Frames, Metric, Precision, Reference, Scope, SetBy, choose_among, ladder,
+    measure, shown,
 };
 use a3_core::stability::spectrum;
 use a3_core::{Control, Method, Scene};
@@ -252,7 +252,12 @@ impl<'a> Search<'a> {
             begun += 1;
         };
         let go_on = &|| monitor.go_on();
-        let found = choose_among(methods, scene, reference, metric, error, go_on, begin);
+        let demand = Demand {
+            metric,
+            error,
+            timed: self.options.timed,
+        };
+        let found = choose_among(methods, scene, reference, demand, go_on, begin);
         monitor.clear();
         let mut found = found.map_err(Failure::run)?.ok_or_else(Failure::stopped)?;
         if !self.options.timed {
