@@ -19,10 +19,10 @@ pub fn run(options: &Render) -> Result<(), Failure> {
     let (path, size) = (&options.output, options.size);
     output::check_ending(path, ENDINGS)?;
     let Run {
+        request,
         mut simulation,
-        presentation,
+        mut presentation,
         until,
-        ..
     } = options.run.prepare(None)?;
     let manner = options.manner.of(options.springs_of);
     check_particle(&simulation, manner.springs_of)?;
@@ -40,6 +40,10 @@ pub fn run(options: &Render) -> Result<(), Failure> {
         },
         until,
     )?;
+    let has_camera = request.source.description.camera.is_some();
+    if !has_camera && let Ok(run) = simulation.anew(simulation.method(), simulation.control()) {
+        show::see_motion(&mut presentation, run, until);
+    }
     let mut show = Show::new(presentation, manner);
     show.transparent = options.transparent;
     let caption = caption(&show, size);

@@ -3,6 +3,7 @@
 mod arrows;
 mod colouring;
 mod colours;
+mod framing;
 mod ground;
 mod manner;
 mod obstacles;
@@ -14,6 +15,7 @@ mod vectors;
 mod wires;
 
 pub use colouring::DECADES;
+pub use framing::{see_all, see_motion};
 pub use manner::{Manner, check_drawing, check_particle, style};
 pub use obstacles::drawn_radius;
 pub use picture::Show;

@@ -21,6 +21,7 @@ use super::runs::KEY_BUDGET;
 use super::state::Session;
 use super::traces::PlotRequest;
 use super::tuning::Tuning;
+use super::view::SEEN_TIME;
 use super::{asking, begin, looks, panel, plotting, save};
 
 /// Carries out an action, and returns whether it changed the scene. Those on a solver are for the
@@ -338,6 +339,7 @@ impl Session {
             Ok(setup) => {
                 self.reset_camera(&setup);
                 self.set_scene(&setup);
+                self.see_motion();
             }
             Err(error) => self.readings.warn(error.to_string()),
         }
@@ -365,6 +367,7 @@ impl Session {
                 self.readings.say(format!("Opened {}{what}.", source.typed));
                 self.reset_camera(&setup);
                 self.set_scene(&setup);
+                self.see_motion();
                 true
             }
             Err(error) => {
@@ -413,6 +416,18 @@ impl Session {
     /// Moves the camera to its initial position in a scene.
     fn reset_camera(&mut self, setup: &Setup) {
         self.view.set_camera(show::camera(&setup.presentation));
+    }
+
+    /// Moves the camera so that the motion that begins fills most of the picture, in a scene that
+    /// names no camera.
+    pub(super) fn see_motion(&mut self) {
+        let first = self.runs.first();
+        let is_named = self.scenes.shown.source.description.camera.is_some();
+        if !is_named && let Ok(run) = first.anew(first.method(), first.control()) {
+            let until = self.tuning.defaults.duration.unwrap_or(SEEN_TIME);
+            self.view
+                .see_motion(&mut self.runs.panes, run, until.min(SEEN_TIME));
+        }
     }
 
     /// Starts another scene, and keeps solvers and steps that can integrate it.

@@ -1,6 +1,6 @@
 //! Sessions as windows and pictures begin with them.
 
-use a3_core::Simulation;
+use a3_core::{Control, Simulation, integrators};
 use a3_files::checkpoint::Kept;
 use a3_files::failure::Failure;
 use a3_files::lessons::{self, Step};
@@ -10,6 +10,7 @@ use a3_media::show::{check_drawing, check_particle};
 
 use super::origin::{Origin, begins_crossed};
 use super::state::Session;
+use super::view::SEEN_TIME;
 use super::words::{Opening, read};
 
 /// Creates the session of a window on one run, or on several side by side. Fails if an option does
@@ -21,9 +22,6 @@ pub fn session(opening: &Opening) -> Result<Session, Failure> {
     }
     session_on(source, opening)
 }
-
-/// Time whose motion the camera of a step without an end takes in (s).
-const SEEN_TIME: f64 = 10.0;
 
 /// Creates the session of a step of a lesson, which pauses at the time of the step. Fails if its
 /// command line does not fit its scene.
@@ -37,8 +35,14 @@ pub fn step(step: &Step) -> Result<Session, Failure> {
     let mut session = session_on(source, &opening)?;
     let own = session.tuning.defaults.duration;
     session.tuning.defaults.duration = step.until.or(own);
-    let until = step.until.unwrap_or(SEEN_TIME);
-    session.view.see_motion(&mut session.runs.panes, until);
+    // The motion of an accurate run, so that the picture shows what methods do wrong.
+    let scene = session.runs.first().scene().clone();
+    if let Some(method) = integrators::find("dop853")
+        && let Ok(run) = Simulation::new(scene, method, Control::Tolerance(1e-5))
+    {
+        let until = step.until.unwrap_or(SEEN_TIME);
+        session.view.see_motion(&mut session.runs.panes, run, until);
+    }
     Ok(session)
 }
 
@@ -93,6 +97,7 @@ fn alone(
         session.readings.say(why);
     }
     session.offer_at_start();
+    session.see_motion();
     Ok(session)
 }
 
@@ -107,7 +112,9 @@ fn beside(request: Request, opening: &Opening) -> Result<Session, Failure> {
     let simulations = simulations.collect::<Result<Vec<_>, Failure>>()?;
     check_drawing(&simulations[0], opening.manner, true)?;
     let origin = origin(request, opening);
-    Session::new(origin, &setup, simulations, opening)
+    let mut session = Session::new(origin, &setup, simulations, opening)?;
+    session.see_motion();
+    Ok(session)
 }
 
 /// Returns a run that begins with or without self-collision, as the options say.

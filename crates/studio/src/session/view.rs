@@ -2,12 +2,10 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use std::sync::Arc;
-
-use a3_core::{Control, Network, Simulation, Vector3, integrators};
+use a3_core::Simulation;
 use a3_media::show;
 use a3_render::Camera;
-use a3_scenes::{Splice, Viewpoint, surroundings};
+use a3_scenes::Splice;
 
 use super::pane::Pane;
 
@@ -19,12 +17,8 @@ const VIEWS: [([f32; 2], &str); 3] = [
     ([0.0, FRAC_PI_2], "The view is from above."),
 ];
 
-/// Time between two states of a run whose motion is looked at (s).
-const SEEN_EVERY: f64 = 1.0 / 30.0;
-/// Most work of such a run: evaluations times particles.
-const MAX_WORK: f64 = 1e6;
-/// Room around the motion, for methods that err.
-const MARGIN: f64 = 1.2;
+/// Longest time whose motion the camera takes in when a scene begins (s).
+pub const SEEN_TIME: f64 = 10.0;
 
 /// The camera, which all panes share, and the particle that it follows.
 pub struct View {
@@ -118,74 +112,19 @@ impl View {
         }
     }
 
-    /// Moves the camera, without turning it, so that all particles of all panes are visible, and
-    /// the obstacles and the floor near them. Liquid that has flowed out is not looked for.
+    /// Moves the camera, without turning it, so that all particles and bodies of all panes are
+    /// visible, and the obstacles and the floor near them.
     pub fn see_all(&mut self, panes: &[Pane]) {
-        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        for pane in panes {
-            let run = &pane.simulation;
-            let fluid = run.model().network().and_then(Network::fluid);
-            let has_left = |i: &usize| fluid.is_some_and(|fluid| fluid.members().has_left(*i));
-            let seen = (0..run.particles()).filter(|i| !has_left(i));
-            for point in seen.map(|i| run.position(i)) {
-                for axis in 0..3 {
-                    low[axis] = low[axis].min(point[axis] as f32);
-                    high[axis] = high[axis].max(point[axis] as f32);
-                }
-            }
-        }
-        let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
-        let [x, y, z] = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]));
-        // Leave room for what is drawn around particles.
-        let radius = x.hypot(y).hypot(z) + 0.1 * self.camera.unit();
-        let middle = Vector3::from(middle.map(f64::from));
-        let (middle, radius) = panes
-            .iter()
-            .fold((middle, f64::from(radius)), |ball, pane| {
-                surroundings(pane.simulation.model(), pane.simulation.time(), ball)
-            });
-        self.camera.see(show::to_f32(middle), radius as f32);
+        show::see_all(&mut self.camera, panes.iter().map(|pane| &pane.simulation));
     }
 
-    /// Moves the camera of a scene that begins, without turning it, so that the motion until a time
-    /// (s) fills most of the picture. The motion is that of an accurate run, as far as a short
-    /// computation gets.
-    pub fn see_motion(&mut self, panes: &mut [Pane], until: f64) {
-        let scene = panes[0].simulation.scene().clone();
-        let (Some(method), tolerance) = (integrators::find("dop853"), Control::Tolerance(1e-5))
-        else {
-            return;
-        };
-        let Ok(mut run) = Simulation::new(scene, method, tolerance) else {
-            return;
-        };
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        loop {
-            for point in (0..run.particles()).map(|i| run.position(i)) {
-                for axis in 0..3 {
-                    low[axis] = low[axis].min(point[axis]);
-                    high[axis] = high[axis].max(point[axis]);
-                }
-            }
-            let work = run.work().evaluations as f64 * run.particles() as f64;
-            let next = run.time() + SEEN_EVERY;
-            if next > until || work > MAX_WORK || run.advance_to(next).is_err() {
-                break;
-            }
-        }
-        let [low, high] = [low, high].map(Vector3::from);
-        let (middle, radius) = (0.5 * (low + high), 0.5 * MARGIN * (high - low).norm());
-        if radius == 0.0 {
-            return;
-        }
-        let mut camera = self.camera;
-        camera.see(show::to_f32(middle), radius as f32);
-        let viewpoint = Viewpoint {
-            eye: camera.eye().coords.cast(),
-            target: camera.target().coords.cast(),
-        };
+    /// Moves the camera of a scene that begins, without turning it, so that the motion of a run
+    /// until a time (s) fills most of the picture, as far as a short computation gets.
+    pub fn see_motion(&mut self, panes: &mut [Pane], run: Simulation, until: f64) {
+        let mut presentation = panes[0].show.presentation.clone();
+        show::see_motion(&mut presentation, run, until);
         for pane in &mut *panes {
-            Arc::make_mut(&mut pane.show.presentation).viewpoint = viewpoint;
+            pane.show.presentation = presentation.clone();
         }
         self.set_camera(panes[0].show.camera());
     }
@@ -289,6 +228,41 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// A scene without a camera begins with one that takes in what moves; one with a camera keeps
+    /// its own.
+    #[test]
+    fn a_scene_without_a_camera_is_seen_as_far_as_it_moves() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("slide.toml");
+        let text = "gravity = [0, -9.81, 0]\nfloor = 0\n[[body]]\nparts = [{ box = [0.2, 0.1, 0.2] }]\nmass = 1\n\
+            at = [0, 0.052, 0]\nvelocity = [2.5, 0, 0]\nfriction = 0.5\n";
+        let open = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            session(&["r", "0.005", "--scene", path.to_str().unwrap()])
+        };
+        let mut opened = open(text);
+        let start = opened.runs.first().position(0);
+        frames(&mut opened, 1.0);
+        let end = opened.runs.first().position(0);
+        assert!(end.x - start.x > 0.3, "{end}");
+        let at = |place| {
+            let ([x, _], _) = opened
+                .view
+                .camera
+                .project(show::to_f32(place), 1.5)
+                .unwrap();
+            x
+        };
+        let (first, last) = (at(start), at(end));
+        assert!(
+            first > 0.05 && last < 0.95 && last - first > 0.25,
+            "{first} to {last}"
+        );
+        let named = format!("{text}[camera]\neye = [0, 1, 4]\ntarget = [0, 0.1, 0]\n");
+        let eye = open(&named).view.camera.eye();
+        assert!((eye.z - 4.0).abs() < 1e-5, "{eye}");
     }
 
     #[test]
