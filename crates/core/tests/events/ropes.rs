@@ -243,3 +243,67 @@ fn rebounds_between_two_ropes_end() {
         );
     }
 }
+
+/// A pin lifts a particle on its rope and stops. The rope does not push: the particle flies on, and
+/// is caught where it falls back to its length.
+#[test]
+fn a_particle_flies_on_where_its_pin_stops() {
+    let (speed, stop) = (0.4, 0.5);
+    let scene = described(&format!(
+        "gravity = [0, -{G}, 0]\n\
+         particles = {{ positions = [[0, 0, 0], [0, -1, 0]], mass = 1 }}\n\
+         [[pin]]\nparticles = [0]\nshift = {{ by = [0, {}, 0], start = 0, end = {stop} }}\n\
+         [[constraint]]\nrope = [0, 1]\nrestitution = 0\n",
+        speed * stop
+    ));
+    for (name, value, bound) in [
+        ("rk4", 1e-3, 1e-9),
+        ("verlet", 1e-3, 1e-9),
+        ("tr-bdf2", 1e-3, 1e-9),
+        ("implicit-midpoint", 1e-3, 1e-9),
+        ("implicit", 1e-3, 3e-4),
+        ("dop853", 1e-9, 1e-8),
+        ("bdf", 1e-7, 1e-6),
+    ] {
+        for late in [0.02, 0.06, 0.2] {
+            let run = run(&scene, name, value, stop + late);
+            let height = run.position(1).y - speed * stop + 1.0;
+            let right = (speed * late - 0.5 * G * late * late).max(0.0);
+            assert!((height - right).abs() < bound, "{name} {late}: {height}");
+        }
+    }
+}
+
+/// Shorter steps are no worse, near the origin and far away: errors of the implicit equations are
+/// rounding errors.
+#[test]
+fn implicit_steps_on_ropes_converge_wherever_they_are() {
+    for far in [0.0, 1e4] {
+        let at = |x: f64, y: f64| format!("[{}, {y}, {}]", x + far, 0.3 * x);
+        let scene = described(&format!(
+            "gravity = [0, -{G}, 0]\n\
+             particles = {{ positions = [{}, {}, {}, {}], mass = 1, pin = [{{ particles = [0] }}] }}\n\
+             [[constraint]]\nrope = [0, 1]\n[[constraint]]\nrod = [1, 2]\n[[constraint]]\nrope = [2, 3]\n",
+            at(0.0, 0.0),
+            at(0.8, 0.1),
+            at(1.5, -0.2),
+            at(2.1, 0.3)
+        ));
+        let until = 0.3;
+        let exact = run(&scene, "dop853", 1e-11, until);
+        for name in ["tr-bdf2", "implicit-midpoint"] {
+            let error = |h: f64| {
+                let run = run(&scene, name, h, until);
+                let apart = (0..4).map(|i| (run.position(i) - exact.position(i)).norm());
+                apart.fold(0.0, f64::max)
+            };
+            let errors = [2e-3, 5e-4, 1e-4].map(error);
+            let [long, middle, short] = errors;
+            let rounding = 1e-11 * (1.0 + far);
+            assert!(
+                middle < 0.15 * long + rounding && short < 0.15 * middle + rounding,
+                "{far} {name}: {errors:?}"
+            );
+        }
+    }
+}

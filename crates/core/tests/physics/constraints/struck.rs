@@ -383,3 +383,76 @@ fn the_limit_of_a_slider_passes_impulses_one_way() {
         }
     }
 }
+
+/// An observer who moves along sees the same impact: what a moving box does to the end of a rod, of
+/// a particle or a ball, does not depend on the frame.
+#[test]
+fn rods_rebound_alike_from_moving_boxes() {
+    let (friction, restitution, time) = (0.4, 0.6, 0.06);
+    let seen = |body: bool, w: Vector3<f64>, method| {
+        let write = |v: Vector3<f64>| format!("[{}, {}, {}]", v.x, v.y, v.z);
+        let velocity = |v: Vector3<f64>| write(v + w);
+        let (fast, slow) = (vector(-2.4, -2.0, 1.8), vector(-1.9, -2.06, 1.82));
+        let upper = vector(0.08, 0.62, -0.17);
+        // The rates of both ends along the rod are the same.
+        let along = upper - vector(0.0, 0.06, 0.0);
+        let slow = slow + along * ((fast - slow).dot(&along) / along.norm_squared());
+        let lower = if body {
+            format!(
+                "[[body]]
+                parts = [{{ ball = 0.05 }}]
+                mass = 1
+                at = [0, 0.11, 0]
+                velocity = {}
+                friction = {friction}
+                restitution = {restitution}",
+                velocity(fast)
+            )
+        } else {
+            String::new()
+        };
+        let (positions, velocities, masses, rod) = if body {
+            (write(upper), velocity(fast), "1.5", "[1, 0]")
+        } else {
+            let positions = format!("[0, 0.06, 0], {}", write(upper));
+            let velocities = format!("{}, {}", velocity(fast), velocity(slow));
+            (positions, velocities, "1, 1.5", "[0, 1]")
+        };
+        let scene = format!(
+            "gravity = [0, 0, 0]
+            [particles]
+            positions = [{positions}]
+            velocities = [{velocities}]
+            masses = [{masses}]
+            [[box]]
+            center = [0, -2, 0]
+            size = [40, 4, 40]
+            friction = {friction}
+            restitution = {restitution}
+            shift = {{ by = {}, end = 10 }}
+            [[constraint]]
+            rod = {rod}
+            {lower}",
+            write(w * 10.0)
+        );
+        let run = run(&scene, method, time);
+        let (n, y) = (run.model().particles(), run.state());
+        let place = |i: usize| vector(y[i], y[n + i], y[2 * n + i]) - w * time;
+        [place(0), place(1)]
+    };
+    for method in all() {
+        for body in [false, true] {
+            let still = seen(body, Vector3::zeros(), method);
+            for w in [
+                vector(0.1, 0.0, 0.0),
+                vector(0.0, 0.01, 0.0),
+                vector(0.3, 0.5, -0.2),
+            ] {
+                let apart = seen(body, w, method);
+                let apart = (0..2).map(|i| (apart[i] - still[i]).norm());
+                let apart = apart.fold(0.0, f64::max);
+                assert!(apart < 1e-6, "{}, {body}, {w:?}: {apart:e} m", method.0);
+            }
+        }
+    }
+}
