@@ -87,8 +87,9 @@ pub fn see_motion(presentation: &mut Arc<Presentation>, mut run: Simulation, unt
             low: seen.low.inf(&now.low),
             high: seen.high.sup(&now.high),
         };
-        // Also ends where there are no particles, whose box is empty.
-        if !(wider.radius() < MOST * radius) {
+        // Nothing fits where there are no particles, whose box is empty.
+        let fits = wider.radius() < MOST * radius;
+        if !fits {
             break;
         }
         seen = wider;
