@@ -50,7 +50,9 @@ fn failed(scene: &str, more: &str, code: i32) -> String {
 fn lost_rods_and_lost_energy_are_told() {
     let (said, summary) = told(BEAD, "v 0.012 --until 5");
     assert!(
-        said.starts_with("warning: constraint ") && said.contains("was off by "),
+        said.starts_with("warning: the run gained ")
+            && said.contains("warning: constraint ")
+            && said.contains("was off by "),
         "{said}"
     );
     assert!(summary["constraint"]["off_by_percent"].as_f64().unwrap() > 1.0);
