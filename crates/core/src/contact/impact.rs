@@ -35,8 +35,8 @@ pub(super) struct Blow {
     /// Whether the sides move on freely afterwards: with a speed of restitution, or into the range
     /// of their repulsion.
     pub is_free: bool,
-    /// Velocity (m/s) of the side with a prescribed motion, if one has it, so that what moves gets
-    /// the work of the impulse at the relative velocity and at this one.
+    /// Velocity (m/s) of the side whose motion is prescribed, or 0. The work on the other side is
+    /// that at the relative velocity plus the product of the impulse with this velocity.
     carried: Vector3<f64>,
     /// Impulse on the first side (N s).
     pub impulse: Vector3<f64>,

@@ -63,7 +63,7 @@ impl Bounds {
 /// and the obstacles and the floor near them.
 pub fn see_all<'a>(camera: &mut Camera, runs: impl Iterator<Item = &'a Simulation> + Clone) {
     let bounds = Bounds::of(runs.clone());
-    // Leave room for what is drawn around particles.
+    // Particles are drawn as balls: those at the edge of the picture need room, too.
     let radius = bounds.radius() + 0.1 * f64::from(camera.unit());
     let (middle, radius) = runs.fold((bounds.middle(), radius), |ball, run| {
         surroundings(run.model(), run.time(), ball)
