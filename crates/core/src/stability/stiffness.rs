@@ -10,9 +10,9 @@ const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 /// Work of the explicit method over that of the implicit one at the first tolerance, from which on
 /// the implicit one counts as cheaper at that tolerance.
 const STIFF_RATIO: f64 = 1.4;
-/// Negative power of the tolerance with which that ratio grows: the explicit method of order 8 takes
-/// tolerance^(-1/8) times as many steps, if stiffness does not limit them, and the implicit one,
-/// whose estimate has order 3, tolerance^(-1/4) times as many.
+/// Negative power of the tolerance with which that ratio grows: the explicit method of order 8
+/// takes tolerance^(-1/8) times as many steps, if stiffness does not limit them, and the implicit
+/// one, whose estimate has order 3, tolerance^(-1/4) times as many.
 const RATIO_POWER: f64 = 1.0 / 4.0 - 1.0 / 8.0;
 
 /// Largest work of all runs of a system of one's own (evaluations), whose time may be of any
