@@ -39,10 +39,8 @@ fn hash(scene: &Scene, method: &'static Method) -> String {
 }
 
 fn main() {
-    let expected: BTreeMap<_, _> = HASHES
-        .lines()
-        .filter_map(|line| line.rsplit_once(' '))
-        .collect();
+    let expected: BTreeMap<_, _> =
+        HASHES.lines().filter_map(|line| line.rsplit_once(' ')).collect();
     let mut compared = 0;
     for entry in a3_scenes::SCENES {
         let scene = entry.build(None).expect("a built-in scene").scene;

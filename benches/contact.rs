@@ -65,11 +65,8 @@ fn time([with, without]: &mut [Simulation; 2], start: &Checkpoint, steps: u32) -
 }
 
 fn frames(c: &mut Criterion) {
-    let sides: &[usize] = if std::env::args().any(|word| word == "--test") {
-        &[20]
-    } else {
-        &[20, 64, 128]
-    };
+    let sides: &[usize] =
+        if std::env::args().any(|word| word == "--test") { &[20] } else { &[20, 64, 128] };
     // Implicit Euler gains energy in longer steps.
     for (name, method, per_side) in [("verlet", "v", 0.5), ("implicit", "i", 1.0 / 64.0)] {
         let mut group = c.benchmark_group(name);

@@ -18,11 +18,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group};
 const SIDES: [usize; 7] = [8, 16, 32, 64, 128, 256, 512];
 
 fn cloth(name: &str, side: usize) -> Scene {
-    a3_scenes::find(name)
-        .unwrap()
-        .build(Some(Grid::new(side, side).unwrap()))
-        .unwrap()
-        .scene
+    a3_scenes::find(name).unwrap().build(Some(Grid::new(side, side).unwrap())).unwrap().scene
 }
 
 fn network(scene: &Scene) -> &Network {
@@ -101,17 +97,12 @@ fn forces(c: &mut Criterion) {
 /// Spring forces of the same springs one by one, in their order and shuffled.
 fn forces_of_a_list(c: &mut Criterion) {
     let mut group = c.benchmark_group("forces/list");
-    for (side, shuffled) in SIDES
-        .into_iter()
-        .flat_map(|side| [(side, false), (side, true)])
-    {
+    for (side, shuffled) in SIDES.into_iter().flat_map(|side| [(side, false), (side, true)]) {
         let scene = cloth("mit", side);
         let mut springs: Vec<Spring> = network(&scene).springs().collect();
         let mut random = 1u64;
         for k in (1..springs.len()).rev().filter(|_| shuffled) {
-            random = random
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             springs.swap(k, (random >> 33) as usize % (k + 1));
         }
         let mut list = Network::new(vec![1.0; side * side]).unwrap();
@@ -188,10 +179,7 @@ fn mixed() -> Vec<(&'static str, Scene)> {
         (
             "cloth and one spring",
             changed(&|network| {
-                let far = Spring {
-                    j: SIDE * SIDE - 1,
-                    ..spring
-                };
+                let far = Spring { j: SIDE * SIDE - 1, ..spring };
                 network.add_spring(far).unwrap();
             }),
         ),
@@ -259,12 +247,8 @@ fn rods(c: &mut Criterion) {
             .and_then(|description| description.build(None, &mut |_| Err("no mesh".into())))
             .unwrap()
             .scene;
-        let mut run = Simulation::new(
-            scene,
-            integrators::find("rk4").unwrap(),
-            Control::Step(1e-3),
-        )
-        .unwrap();
+        let mut run =
+            Simulation::new(scene, integrators::find("rk4").unwrap(), Control::Step(1e-3)).unwrap();
         run.advance_to(0.5).unwrap();
         let system = run.model().system();
         let mut dydt = vec![0.0; system.dim()];
@@ -308,22 +292,14 @@ fn ratios(begun: SystemTime) {
         ("forces_cloth", "sheet", "plain list", "sheet, damped"),
         ("forces_mit", "sheet", "plain list", "sheet, undamped"),
         ("forces_list", "network", "plain list", "single springs"),
-        (
-            "forces_list",
-            "network, shuffled",
-            "plain list, shuffled",
-            "single springs, shuffled",
-        ),
+        ("forces_list", "network, shuffled", "plain list, shuffled", "single springs, shuffled"),
     ] {
         for side in SIDES {
             let mean = |kernel| mean(format!("{group}/{kernel}/{side}"));
             let found = mean(kernel).zip(mean(plain));
             if let Some((kernel, plain)) = found {
                 let grid = Grid::new(side, side).unwrap();
-                let springs = Sheet::new(grid, 1.0, [1.0; 3], 0.0)
-                    .unwrap()
-                    .springs()
-                    .count();
+                let springs = Sheet::new(grid, 1.0, [1.0; 3], 0.0).unwrap().springs().count();
                 println!(
                     "{what:<26} {side:>4} x {side:<4} {:>6.0} million springs/s, {:>4.2} times the plain list",
                     1e3 * springs as f64 / kernel,

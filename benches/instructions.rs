@@ -58,11 +58,7 @@ fn compare() -> ExitCode {
         println!("{kernel:<26} {thousands:>6} {most:>6}{mark}");
         good &= thousands <= most;
     }
-    if good {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    }
+    if good { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
 /// Instructions of this program when it runs the kernel `times` times.
@@ -89,11 +85,7 @@ fn network(scene: &Scene) -> &Network {
 }
 
 fn run(kernel: &str, times: u64) {
-    let scene = cloth(if kernel == "forces of a sheet" {
-        "mit"
-    } else {
-        "cloth"
-    });
+    let scene = cloth(if kernel == "forces of a sheet" { "mit" } else { "cloth" });
     let network = network(&scene);
     let (x, v) = scene.state.split_at(scene.state.len() / 2);
     let mut f = vec![0.0; x.len()];
@@ -123,9 +115,7 @@ fn run(kernel: &str, times: u64) {
             let mut integrator: Box<dyn Integrator> = method.integrator(system).expect("it serves");
             let mut y = scene.state.clone();
             for _ in 0..times {
-                integrator
-                    .step(system, 0.0, 1e-3, black_box(&mut y))
-                    .expect("a step");
+                integrator.step(system, 0.0, 1e-3, black_box(&mut y)).expect("a step");
             }
         }
     }

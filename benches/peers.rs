@@ -53,14 +53,7 @@ fn spent() -> f64 {
     let Ok(threads) = fs::read_dir("/proc/self/task") else {
         return f64::NAN;
     };
-    let one = |path| {
-        fs::read_to_string(path)
-            .ok()?
-            .split(' ')
-            .next()?
-            .parse::<f64>()
-            .ok()
-    };
+    let one = |path| fs::read_to_string(path).ok()?.split(' ').next()?.parse::<f64>().ok();
     let times = threads.filter_map(|thread| one(thread.ok()?.path().join("schedstat")));
     1e-6 * times.sum::<f64>()
 }
@@ -74,10 +67,7 @@ fn time(method: &str, steps: u32, frames: u32) {
         simulation.take_steps(steps.into()).unwrap();
         times.push(spent() - begun);
         let n = simulation.particles();
-        count.add(
-            simulation.model().network().unwrap(),
-            &simulation.state()[..3 * n],
-        );
+        count.add(simulation.model().network().unwrap(), &simulation.state()[..3 * n]);
     }
     let later = &times[(FIRST as usize).min(times.len() - 1)..];
     let mean = later.iter().sum::<f64>() / later.len() as f64;
@@ -89,21 +79,11 @@ fn time(method: &str, steps: u32, frames: u32) {
 fn read(network: &Network, path: &Path) {
     let bytes = fs::read(path).unwrap();
     let points = u32::from_le_bytes(bytes[16..20].try_into().unwrap()) as usize;
-    assert_eq!(
-        points,
-        network.particles(),
-        "the file has the particles of the scene"
-    );
+    assert_eq!(points, network.particles(), "the file has the particles of the scene");
     let (numbers, _) = bytes[32..].as_chunks::<4>();
     let mut count = Count::default();
     for frame in numbers.chunks_exact(3 * points) {
-        let column = |k| {
-            frame
-                .iter()
-                .skip(k)
-                .step_by(3)
-                .map(|b| f32::from_le_bytes(*b).into())
-        };
+        let column = |k| frame.iter().skip(k).step_by(3).map(|b| f32::from_le_bytes(*b).into());
         let x: Vec<f64> = (0..3).flat_map(column).collect();
         count.add(network, &x);
     }

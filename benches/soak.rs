@@ -63,8 +63,7 @@ fn soak(method: &'static Method, steps: u64) -> Option<usize> {
     run.set_swinging(true);
     let mut before = None;
     for tenth in 0..10 {
-        run.take_steps(steps / 10)
-            .unwrap_or_else(|why| panic!("{}: {why}", method.name));
+        run.take_steps(steps / 10).unwrap_or_else(|why| panic!("{}: {why}", method.name));
         assert!(run.state().iter().all(|y| y.is_finite()), "{}", method.name);
         assert_eq!(run.gained(), None, "{}", method.name);
         if tenth == 0 {
@@ -77,21 +76,15 @@ fn soak(method: &'static Method, steps: u64) -> Option<usize> {
 fn main() {
     let is_test = std::env::args().any(|word| word == "--test");
     let steps = STEPS[usize::from(is_test)];
-    let asked: Vec<String> = std::env::args()
-        .skip(1)
-        .filter(|word| !word.starts_with('-'))
-        .collect();
+    let asked: Vec<String> =
+        std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     for method in METHODS {
         if !asked.is_empty() && !asked.iter().any(|name| name == method.name) {
             continue;
         }
         let begun = Instant::now();
         let growth = soak(method, steps);
-        assert!(
-            growth.is_none_or(|growth| growth < GROWTH),
-            "{}: {growth:?} bytes",
-            method.name
-        );
+        assert!(growth.is_none_or(|growth| growth < GROWTH), "{}: {growth:?} bytes", method.name);
         println!(
             "{:>14}: {steps} steps in {:.1} s, memory grew by {} KiB",
             method.name,

@@ -17,9 +17,7 @@ fn solid(side: usize, model: &str, damping: f64) -> (Network, Vec<f64>) {
         "[[solid]]\ngrid = [{side}, {side}, {side}]\nsize = [1, 1, 1]\ndensity = 1000\nyoung = 1e5\n\
          poisson = 0.3\nmodel = \"{model}\"\ndamping = {damping}\nat = [0, 0, 0]"
     );
-    let setup = Description::parse(&text)
-        .unwrap()
-        .build(None, &mut |_| Err(String::new()));
+    let setup = Description::parse(&text).unwrap().build(None, &mut |_| Err(String::new()));
     let scene = setup.unwrap().scene;
     let half = scene.state.len() / 2;
     let bent = |(k, x): (usize, &f64)| x + 0.01 * (7.0 * x + k as f64).sin() / side as f64;
@@ -41,11 +39,7 @@ fn rest(network: &Network, x: &[f64]) -> Vec<Rest> {
         let corners = corners.map(|i| i as usize);
         let [a, b, c, d] = corners.map(at);
         let edges = Matrix3::from_columns(&[b - a, c - a, d - a]);
-        (
-            corners,
-            edges.try_inverse().unwrap(),
-            edges.determinant() / 6.0,
-        )
+        (corners, edges.try_inverse().unwrap(), edges.determinant() / 6.0)
     });
     each.collect()
 }

@@ -21,9 +21,7 @@ pub fn on_scenes(c: &mut Criterion) {
 
 /// A step of every method on both cloths, of every size.
 pub fn by_size(c: &mut Criterion) {
-    for (name, side) in ["cloth", "mit"]
-        .into_iter()
-        .flat_map(|name| SIDES.map(|side| (name, side)))
+    for (name, side) in ["cloth", "mit"].into_iter().flat_map(|name| SIDES.map(|side| (name, side)))
     {
         let mut group = c.benchmark_group(format!("step/{name} {side}x{side}"));
         let scene = cloth(name, side);
@@ -49,10 +47,8 @@ fn adaptive_step(
 ) {
     let system = scene.model.system();
     let tolerance = integrators::Tolerance::new(1.0).unwrap();
-    let Some(mut adaptive) = method
-        .check(system)
-        .ok()
-        .and_then(|()| method.adaptive(system, tolerance))
+    let Some(mut adaptive) =
+        method.check(system).ok().and_then(|()| method.adaptive(system, tolerance))
     else {
         return;
     };
@@ -60,9 +56,7 @@ fn adaptive_step(
     group.bench_function(format!("{} adaptive", method.name), |b| {
         b.iter(|| {
             adaptive.try_first(1e-9);
-            adaptive
-                .advance(system, 0.0, f64::INFINITY, black_box(&mut y))
-                .unwrap()
+            adaptive.advance(system, 0.0, f64::INFINITY, black_box(&mut y)).unwrap()
         });
     });
 }
@@ -76,10 +70,6 @@ pub fn step(group: &mut BenchmarkGroup<'_, WallTime>, scene: &Scene, method: &in
     let mut y = scene.state.clone();
     group.bench_function(method.name, |b| {
         // The step is so small that the state hardly changes over all steps.
-        b.iter(|| {
-            integrator
-                .step(system, 0.0, 1e-12, black_box(&mut y))
-                .unwrap()
-        });
+        b.iter(|| integrator.step(system, 0.0, 1e-12, black_box(&mut y)).unwrap());
     });
 }

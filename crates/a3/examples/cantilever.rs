@@ -48,9 +48,7 @@ fn bar(made: Made, across: usize) -> Result<Bar, Box<dyn Error>> {
         Made::Jelly => "[[jelly]]\nmass = 1\nstiffness = [200, 125, 85]\n".into(),
     };
     let text = format!("{body}grid = {grid:?}\nsize = {SIZE:?}\nat = [0.5, 0, 0]\n");
-    let scene = Description::parse(&text)?
-        .build(None, &mut |name| Err(name.into()))?
-        .scene;
+    let scene = Description::parse(&text)?.build(None, &mut |name| Err(name.into()))?.scene;
     let own = scene.model.network().ok_or("no network")?;
     let n = own.particles();
     let at = |axis: usize, i: usize| scene.state[axis * n + i];
@@ -130,28 +128,11 @@ fn error(made: Made, bar: &mut Bar) -> Result<f64, Box<dyn Error>> {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let path = std::env::args()
-        .nth(1)
-        .ok_or("which file is the chart to be?")?;
+    let path = std::env::args().nth(1).ok_or("which file is the chart to be?")?;
     let kinds = [
-        (
-            Made::Solid(0.0),
-            "solid, Poisson's ratio 0",
-            "#1f77b4",
-            Marker::Polygon(8, 0.0),
-        ),
-        (
-            Made::Solid(0.3),
-            "solid, 0.3",
-            "#d62728",
-            Marker::Polygon(4, 0.125),
-        ),
-        (
-            Made::Solid(0.45),
-            "solid, 0.45",
-            "#2ca02c",
-            Marker::Polygon(4, 0.0),
-        ),
+        (Made::Solid(0.0), "solid, Poisson's ratio 0", "#1f77b4", Marker::Polygon(8, 0.0)),
+        (Made::Solid(0.3), "solid, 0.3", "#d62728", Marker::Polygon(4, 0.125)),
+        (Made::Solid(0.45), "solid, 0.45", "#2ca02c", Marker::Polygon(4, 0.0)),
         (Made::Jelly, "jelly", "#7f7f7f", Marker::Polygon(3, 0.0)),
     ];
     let mut curves = vec![];
@@ -161,10 +142,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for across in [1, 2, 4, 8] {
             let mut bar = bar(made, across)?;
             let error = error(made, &mut bar)?;
-            println!(
-                "{name:<25}  {across:12}   {:14.0}   {:+.3}",
-                bar.cost, error
-            );
+            println!("{name:<25}  {across:12}   {:14.0}   {:+.3}", bar.cost, error);
             runs.push(Measurement {
                 error: error.abs(),
                 work: bar.cost,
@@ -174,11 +152,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 spread: None,
             });
         }
-        let style = CurveStyle {
-            colour,
-            dash: &[],
-            marker,
-        };
+        let style = CurveStyle { colour, dash: &[], marker };
         let name = name.into();
         curves.push(Curve { style, name, runs });
     }
@@ -188,10 +162,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             .into(),
         x_label: "error of the deflection, against Timoshenko's beam".into(),
         y_label: "cost of the forces (single springs)".into(),
-        problems: vec![Problem {
-            curves,
-            ..Problem::default()
-        }],
+        problems: vec![Problem { curves, ..Problem::default() }],
         foot: String::new(),
         held: String::new(),
     };

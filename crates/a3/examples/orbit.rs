@@ -49,20 +49,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     let until = Some(PERIOD);
-    let options = ChartOptions {
-        until,
-        ..ChartOptions::default()
-    };
+    let options = ChartOptions { until, ..ChartOptions::default() };
     let chart = a3::chart(&scene, &methods, &options, &())?;
     let chart = chart.figure(800, 560)?.png(1.5)?;
     std::fs::write(format!("{folder}/orbit-chart.png"), chart)?;
 
     // Five times as large as they are.
-    let globe = |x: f64, radius, color| Ball {
-        center: [x as f32, 0.0, 0.0],
-        radius,
-        color,
-    };
+    let globe = |x: f64, radius, color| Ball { center: [x as f32, 0.0, 0.0], radius, color };
     let picture = Picture {
         lines: &lines,
         balls: &[

@@ -33,10 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let built_in = ["heun", "rk4", "dopri5"].map(|name| integrators::find(name).unwrap());
     let methods = [&built_in[..], &[ralston]].concat();
-    let options = ChartOptions {
-        until: Some(10.0),
-        ..ChartOptions::default()
-    };
+    let options = ChartOptions { until: Some(10.0), ..ChartOptions::default() };
     let chart = a3::chart(&scene, &methods, &options, &())?;
     print!("{}", chart.table());
     let picture = chart.figure(800, 560)?.png(1.5)?;

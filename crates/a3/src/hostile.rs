@@ -42,10 +42,7 @@ fn command_lines_are_taken_or_refused() {
         let Err(error) = Cli::try_parse_from(words) else {
             return true;
         };
-        if !matches!(
-            error.kind(),
-            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
-        ) {
+        if !matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
             let why = explain(&error, &[]).unwrap_err().to_string();
             assert!(!why.is_empty() && !why.contains('\n'), "{line}: {why}");
         }
@@ -118,17 +115,8 @@ fn the_page_reads_command_lines_as_the_program_does() {
         let by = |read: fn(&[String]) -> Result<Opening, Failure>| {
             let opening = read(&words).map_err(|why| why.to_string())?;
             let methods = opening.methods.iter();
-            let methods: Vec<_> = methods
-                .map(|(m, step)| (m.map(|m| m.name), *step))
-                .collect();
-            let Opening {
-                scene,
-                options,
-                limits,
-                manner,
-                resume,
-                ..
-            } = &opening;
+            let methods: Vec<_> = methods.map(|(m, step)| (m.map(|m| m.name), *step)).collect();
+            let Opening { scene, options, limits, manner, resume, .. } = &opening;
             let look = (
                 manner.style == Style::Wireframe,
                 manner.style == Style::Springs,
@@ -158,11 +146,7 @@ fn the_page_reads_command_lines_as_the_program_does() {
         }
     }
     // The program prints its help.
-    let prints = |line: &str| {
-        ["-h", "-V", "--h", "--v"]
-            .iter()
-            .any(|it| line.contains(it))
-    };
+    let prints = |line: &str| ["-h", "-V", "--h", "--v"].iter().any(|it| line.contains(it));
     let taken = feed(&lines, |line| {
         if prints(line) {
             return false;
@@ -179,18 +163,14 @@ fn the_page_reads_command_lines_as_the_program_does() {
 
 #[test]
 fn data_of_charts_are_taken_or_refused() {
-    let [csv, json] = &seeds("data")[..] else {
-        panic!("other seeds")
-    };
+    let [csv, json] = &seeds("data")[..] else { panic!("other seeds") };
     for (seed, is_json) in [(csv, false), (json, true)] {
         let taken = feed(std::slice::from_ref(seed), |text| {
             let Ok(records) = read::<Record>(text, is_json) else {
                 return false;
             };
             // These comparisons of runs must not panic either.
-            let same = records
-                .iter()
-                .filter(|r| r.is_same(&records[0]) && !r.is_held());
+            let same = records.iter().filter(|r| r.is_same(&records[0]) && !r.is_held());
             assert!(same.count() <= records.len());
             true
         });
@@ -215,10 +195,7 @@ fn states_are_taken_or_refused() {
             };
             taken += 1;
             assert!(states.times.windows(2).all(|pair| pair[0] < pair[1]));
-            let rows = states
-                .positions
-                .iter()
-                .chain(states.velocities.iter().flatten());
+            let rows = states.positions.iter().chain(states.velocities.iter().flatten());
             assert!(rows.into_iter().all(|row| row.len() == 6));
             let mut numbers = states.positions.iter().flatten();
             assert!(numbers.all(|x| x.is_finite()));

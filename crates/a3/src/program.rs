@@ -37,10 +37,7 @@ fn name_runtime_folder(args: &[OsString]) {
     use std::process;
     const NAME: &str = "XDG_RUNTIME_DIR";
     let command = Cli::try_parse_from(args).map(|cli| cli.command);
-    let draws = matches!(
-        command,
-        Ok(None | Some(Command::Compare(_) | Command::Render(_)))
-    );
+    let draws = matches!(command, Ok(None | Some(Command::Compare(_) | Command::Render(_))));
     if draws
         && std::env::var_os(NAME).is_none_or(|folder| folder.is_empty())
         && let (Ok(own), [name, rest @ ..]) = (std::env::current_exe(), args)

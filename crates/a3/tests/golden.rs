@@ -21,11 +21,8 @@ const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes");
 const STEP: f64 = 2e-3;
 const TOLERANCE: &str = "1e-6";
 /// Scenes of at least 4096 particles, whose rows threads share: scene, grid and steps.
-const LARGE: [(&str, &str, u32); 3] = [
-    ("cloth", "64x64", 20),
-    ("mit", "70x64", 20),
-    ("flag", "64x66", 12),
-];
+const LARGE: [(&str, &str, u32); 3] =
+    [("cloth", "64x64", 20), ("mit", "70x64", 20), ("flag", "64x66", 12)];
 const STEPS: u32 = 300;
 /// Step (s) and steps in scenes whose surfaces touch, where each frame is checked for surfaces that
 /// pass through one another. Adaptive methods take too long there.
@@ -47,12 +44,7 @@ struct Run {
 
 impl Run {
     fn name(&self) -> String {
-        let Self {
-            scene,
-            grid,
-            method,
-            ..
-        } = self;
+        let Self { scene, grid, method, .. } = self;
         let scene = Path::new(scene).file_stem().unwrap().to_str().unwrap();
         format!("{scene} {} {method}", grid.unwrap_or("-"))
     }
@@ -72,11 +64,7 @@ impl Run {
         ]
         .into();
         words.extend(self.check.then(|| "--check".into()));
-        words.extend(
-            self.grid
-                .into_iter()
-                .flat_map(|grid| ["--grid".into(), grid.into()]),
-        );
+        words.extend(self.grid.into_iter().flat_map(|grid| ["--grid".into(), grid.into()]));
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let output = command(folder, &words)
             .env("RAYON_NUM_THREADS", self.threads.to_string())
@@ -113,19 +101,14 @@ fn runs() -> Vec<Run> {
     let mut documented: Vec<_> = std::fs::read_dir(DOCS)
         .unwrap()
         .map(|entry| entry.unwrap().path().canonicalize().unwrap())
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "toml")
-        })
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
         .map(|path| path.to_str().unwrap().to_owned())
         .collect();
     documented.sort();
     scenes.extend(documented);
     let small = scenes.into_iter().map(|scene| (scene, None, STEPS, 1));
     let large = LARGE.into_iter().flat_map(|(scene, grid, steps)| {
-        [1, 2, 3, 8]
-            .into_iter()
-            .map(move |threads| (scene.to_owned(), Some(grid), steps, threads))
+        [1, 2, 3, 8].into_iter().map(move |threads| (scene.to_owned(), Some(grid), steps, threads))
     });
     small
         .chain(large)
@@ -148,11 +131,7 @@ fn runs() -> Vec<Run> {
                 scene: scene.clone(),
                 grid,
                 method: method.letter.unwrap(),
-                setting: if method.is_adaptive() {
-                    TOLERANCE.into()
-                } else {
-                    step.to_string()
-                },
+                setting: if method.is_adaptive() { TOLERANCE.into() } else { step.to_string() },
                 until: f64::from(if slides && method.is_adaptive() {
                     steps.min(SLIDING)
                 } else {
@@ -195,19 +174,14 @@ fn no_bit_of_any_state_has_changed() {
         return;
     }
     let expected = std::fs::read_to_string(HASHES).unwrap();
-    let expected: BTreeMap<_, _> = expected
-        .lines()
-        .filter_map(|line| line.rsplit_once(' '))
-        .collect();
+    let expected: BTreeMap<_, _> =
+        expected.lines().filter_map(|line| line.rsplit_once(' ')).collect();
     let changed: Vec<_> = found
         .iter()
         .filter(|(name, hash)| expected.get(name.as_str()) != Some(&hash.as_str()))
         .map(|(name, _)| name.as_str())
         .collect();
-    let missing: Vec<_> = expected
-        .keys()
-        .filter(|name| !found.contains_key(**name))
-        .collect();
+    let missing: Vec<_> = expected.keys().filter(|name| !found.contains_key(**name)).collect();
     assert!(
         changed.is_empty() && missing.is_empty(),
         "changed or new: {changed:#?}; missing: {missing:#?}"

@@ -47,10 +47,7 @@ fn springs() -> Scene {
 }
 
 fn until(until: f64) -> ChartOptions {
-    ChartOptions {
-        until: Some(until),
-        ..ChartOptions::default()
-    }
+    ChartOptions { until: Some(until), ..ChartOptions::default() }
 }
 
 fn usage<T>(result: Result<T, Failure>) -> String {
@@ -101,14 +98,7 @@ fn a_chart_has_the_runs_of_the_command() {
     let picture = data.with_extension("svg");
     let command = Command::new(env!("CARGO_BIN_EXE_a3"))
         .args(["chart", "--scene", "pendulum", "--solvers", "e,r,f"])
-        .args([
-            "--until",
-            "0.5",
-            "--work",
-            "evaluations",
-            "--no-model",
-            "--data",
-        ])
+        .args(["--until", "0.5", "--work", "evaluations", "--no-model", "--data"])
         .arg(&data)
         .arg("--output")
         .arg(&picture)
@@ -135,10 +125,7 @@ fn a_chart_has_the_runs_of_the_command() {
         let works = chart.runs().filter(keeps).map(|run| run.work);
         keeps(best) && best.work == works.fold(f64::INFINITY, f64::min)
     };
-    assert!(
-        winners.len() > 2 && winners.iter().all(is_cheapest),
-        "{words}"
-    );
+    assert!(winners.len() > 2 && winners.iter().all(is_cheapest), "{words}");
     assert!(String::from_utf8_lossy(&command.stdout).starts_with(&chart.table()));
 }
 
@@ -179,21 +166,14 @@ fn own_methods_are_chosen_where_they_are_the_cheapest() {
     assert!(choice.best().milliseconds <= 1e4);
     options.goal = Goal::Budget(0.0);
     let why = usage(a3::choose(&decay(2.0), &methods, &options, &()));
-    assert!(
-        why.contains("a budget is a number of milliseconds"),
-        "{why}"
-    );
+    assert!(why.contains("a budget is a number of milliseconds"), "{why}");
 }
 
 #[test]
 fn runs_are_compared_at_the_same_times() {
     let own = euler("compare-euler");
     let step = Control::Step(0.125);
-    let runs = [
-        (own, step),
-        (find("euler").unwrap(), step),
-        (own, Control::Step(0.25)),
-    ];
+    let runs = [(own, step), (find("euler").unwrap(), step), (own, Control::Step(0.25))];
     let found = a3::compare(&decay(1.0), &runs, 1.0, 4, &()).unwrap();
     assert_eq!(found.times, [0.0, 0.25, 0.5, 0.75, 1.0]);
     for (k, state) in found.runs[0].states.iter().enumerate() {
@@ -206,30 +186,15 @@ fn runs_are_compared_at_the_same_times() {
     assert!(found.distance(0, 3).is_empty());
 
     let cloth = a3::scene("cloth").unwrap();
-    let runs = [
-        (own, Control::Step(0.1)),
-        (find("verlet").unwrap(), Control::Step(1e-3)),
-    ];
+    let runs = [(own, Control::Step(0.1)), (find("verlet").unwrap(), Control::Step(1e-3))];
     let found = a3::compare(&cloth, &runs, 10.0, 10, &()).unwrap();
     assert!(found.runs[0].blow_up.is_some() && found.runs[0].states.len() < 11);
     assert!(found.runs[1].blow_up.is_none() && found.runs[1].energies.len() == 11);
     assert_eq!(found.distance(0, 1).len(), found.runs[0].states.len());
 
-    let why = usage(a3::compare(
-        &decay(1.0),
-        &[(own, Control::Tolerance(1e-3))],
-        1.0,
-        4,
-        &(),
-    ));
+    let why = usage(a3::compare(&decay(1.0), &[(own, Control::Tolerance(1e-3))], 1.0, 4, &()));
     assert!(why.contains("step"), "{why}");
-    usage(a3::compare(
-        &decay(1.0),
-        &[(own, Control::Step(-1.0))],
-        1.0,
-        4,
-        &(),
-    ));
+    usage(a3::compare(&decay(1.0), &[(own, Control::Step(-1.0))], 1.0, 4, &()));
     usage(a3::compare(&decay(1.0), &[(own, step)], f64::NAN, 4, &()));
     usage(a3::compare(&decay(1.0), &[(own, step)], 1.0, 0, &()));
 }
@@ -240,50 +205,23 @@ fn wrong_requests_are_refused_with_one_line() {
     let scene = decay(1.0);
     let refused =
         |scene: &Scene, options: ChartOptions| usage(a3::chart(scene, &[own], &options, &()));
-    let of = |error| ChartOptions {
-        error: Some(error),
-        ..until(1.0)
-    };
+    let of = |error| ChartOptions { error: Some(error), ..until(1.0) };
     for (options, word) in [
         (until(0.0), "the end of"),
         (until(f64::NAN), "the end of"),
         (of(Metric::Energy), "energy"),
         (of(Metric::Position), "state"),
-        (
-            ChartOptions {
-                particle: Some(9),
-                ..until(1.0)
-            },
-            "has no number 9",
-        ),
-        (
-            ChartOptions {
-                stiffness: vec![2.0],
-                ..until(1.0)
-            },
-            "no springs",
-        ),
-        (
-            ChartOptions {
-                stiffness: vec![-1.0],
-                ..until(1.0)
-            },
-            "factor",
-        ),
+        (ChartOptions { particle: Some(9), ..until(1.0) }, "has no number 9"),
+        (ChartOptions { stiffness: vec![2.0], ..until(1.0) }, "no springs"),
+        (ChartOptions { stiffness: vec![-1.0], ..until(1.0) }, "factor"),
     ] {
         let why = refused(&scene, options);
         assert!(why.contains(word) && !why.contains('\n'), "{why}");
     }
     assert!(refused(&springs(), of(Metric::State)).contains("position"));
-    let short = Scene {
-        state: vec![],
-        ..decay(1.0)
-    };
+    let short = Scene { state: vec![], ..decay(1.0) };
     assert!(refused(&short, until(1.0)).contains("the system needs 1"));
-    let nan = Scene {
-        state: vec![f64::NAN],
-        ..decay(1.0)
-    };
+    let nan = Scene { state: vec![f64::NAN], ..decay(1.0) };
     assert!(refused(&nan, until(1.0)).contains("not finite"));
     assert!(refused(&decay(0.0), until(1.0)).contains("nothing moves"));
 
@@ -312,10 +250,7 @@ fn failures_of_callbacks_come_out_in_their_own_words() {
     });
     let failing = failing.unwrap().register();
     let own = heun("failing-heun");
-    let options = ChooseOptions {
-        until: Some(1.0),
-        ..ChooseOptions::new(Goal::Error(1e-3))
-    };
+    let options = ChooseOptions { until: Some(1.0), ..ChooseOptions::new(Goal::Error(1e-3)) };
     let words = |failure: Option<Failure>| failure.unwrap().to_string();
     for from in [-1.0, 0.5] {
         let all = [
@@ -339,15 +274,8 @@ fn failures_of_callbacks_come_out_in_their_own_words() {
     let nan = Method::from_step("nan-step", 1, |_, _, y, _| Ok(vec![f64::NAN; y.len()]));
     let nan = nan.unwrap().register();
     let chart = a3::chart(&decay(1.0), &[nan, own], &until(1.0), &()).unwrap();
-    assert!(
-        chart
-            .runs()
-            .filter(|run| run.solver == "nan-step")
-            .all(|run| run.lost_at.is_some())
-    );
-    let why = a3::choose(&decay(1.0), &[nan], &options, &())
-        .err()
-        .unwrap();
+    assert!(chart.runs().filter(|run| run.solver == "nan-step").all(|run| run.lost_at.is_some()));
+    let why = a3::choose(&decay(1.0), &[nan], &options, &()).err().unwrap();
     assert!(why.to_string().contains("no solver meets"), "{why}");
 }
 
@@ -377,22 +305,15 @@ fn a_monitor_stops_the_work() {
     let (scene, methods) = (springs(), [heun("monitor-heun"), find("rk4").unwrap()]);
     let no = &|| false;
     let interrupted = |failure: Option<Failure>| matches!(failure, Some(Failure::Interrupted(_)));
-    assert!(interrupted(
-        a3::chart(&scene, &methods, &until(1.0), no).err()
-    ));
+    assert!(interrupted(a3::chart(&scene, &methods, &until(1.0), no).err()));
     assert!(interrupted(a3::stability(&scene, &methods, no).err()));
     let options = ChooseOptions::new(Goal::Error(1e-3));
-    assert!(interrupted(
-        a3::choose(&scene, &methods, &options, no).err()
-    ));
+    assert!(interrupted(a3::choose(&scene, &methods, &options, no).err()));
     let runs = methods.map(|method| (method, Control::Step(0.01)));
     let found = a3::compare(&scene, &runs, 1.0, 10, no).unwrap();
     assert!(found.runs.iter().all(|run| run.states.is_empty()));
 
-    let monitor = Counting {
-        left: AtomicUsize::new(3),
-        told: AtomicBool::new(false),
-    };
+    let monitor = Counting { left: AtomicUsize::new(3), told: AtomicBool::new(false) };
     let chart = a3::chart(&scene, &methods, &until(1.0), &monitor).unwrap();
     assert!(!chart.is_complete() && monitor.told.into_inner());
     assert!((1..=4).contains(&chart.runs().count()));

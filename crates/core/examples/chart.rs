@@ -12,12 +12,7 @@ fn pendulum() -> Result<Scene, Error> {
     let mut network = Network::new(vec![1.0; 2])?;
     let law = SpringLaw::new(50.0, 1.0, 0.0)?;
     let kind = SpringKind::Structural;
-    network.add_spring(Spring {
-        kind,
-        i: 0,
-        j: 1,
-        law,
-    })?;
+    network.add_spring(Spring { kind, i: 0, j: 1, law })?;
     network.pin(0, Path::Still(Vector3::zeros()))?;
     network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
     // All x, all y, all z of the two positions, and then of the velocities.

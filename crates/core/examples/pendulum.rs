@@ -17,12 +17,7 @@ fn main() -> Result<(), Error> {
     let mut network = Network::new(vec![0.1; N])?;
     let law = SpringLaw::new(200.0, SPACING, 0.05)?;
     let kind = SpringKind::Structural;
-    network.add_springs((1..N).map(|j| Spring {
-        kind,
-        i: j - 1,
-        j,
-        law,
-    }))?;
+    network.add_springs((1..N).map(|j| Spring { kind, i: j - 1, j, law }))?;
     network.pin(0, Path::Still(Vector3::zeros()))?;
     network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
 
@@ -43,12 +38,7 @@ fn main() -> Result<(), Error> {
         run.advance_to(0.2 * f64::from(frame))?;
         let end = run.position(N - 1);
         let energy = run.energy().map_or(0.0, |energy| energy.total());
-        println!(
-            "{:8.2}   {:9.4} {:9.4}   {energy:10.4}",
-            run.time(),
-            end.x,
-            end.y
-        );
+        println!("{:8.2}   {:9.4} {:9.4}   {energy:10.4}", run.time(), end.x, end.y);
     }
     Ok(())
 }

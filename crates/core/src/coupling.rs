@@ -84,18 +84,8 @@ pub struct RankOneCoupling {
 
 impl From<BlockCoupling> for GeneralCoupling {
     fn from(coupling: BlockCoupling) -> Self {
-        let BlockCoupling {
-            i,
-            j,
-            stiffness,
-            damping,
-        } = coupling;
-        Self {
-            i,
-            j,
-            stiffness: full(stiffness),
-            damping: full(damping),
-        }
+        let BlockCoupling { i, j, stiffness, damping } = coupling;
+        Self { i, j, stiffness: full(stiffness), damping: full(damping) }
     }
 }
 

@@ -243,19 +243,13 @@ impl fmt::Display for Rounded {
 
 impl fmt::Display for BlowUp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            step, time, cause, ..
-        } = self;
+        let Self { step, time, cause, .. } = self;
         write!(f, "blew up at step {step}, t = {time:.4} s: ")?;
         match cause {
             Cause::Away { particle, distance } => {
                 write!(f, "particle {particle} is {} m away", Rounded(*distance))
             }
-            Cause::Gained {
-                energy,
-                particle,
-                speed,
-            } => write!(
+            Cause::Gained { energy, particle, speed } => write!(
                 f,
                 "it gained {} J that nothing put in, and particle {particle} moves at {} m/s",
                 Rounded(*energy),
@@ -267,21 +261,16 @@ impl fmt::Display for BlowUp {
                     "the position, velocity or acceleration of particle {particle} is not finite"
                 )
             }
-            Cause::NumberNotFinite { index } => write!(
-                f,
-                "number {index} of the state, or its rate of change, is not finite"
-            ),
+            Cause::NumberNotFinite { index } => {
+                write!(f, "number {index} of the state, or its rate of change, is not finite")
+            }
             Cause::StepTooSmall { step } => {
-                write!(
-                    f,
-                    "no step meets the tolerance, not even one of {step:.1e} s"
-                )
+                write!(f, "no step meets the tolerance, not even one of {step:.1e} s")
             }
             Cause::NoConvergence { residual } => not_solved(*residual, f),
-            Cause::ReadsVelocity => write!(
-                f,
-                "forces must not depend on the velocity, except by drag: {USE_ANOTHER}"
-            ),
+            Cause::ReadsVelocity => {
+                write!(f, "forces must not depend on the velocity, except by drag: {USE_ANOTHER}")
+            }
             &Cause::TooDense { numbers, most } => {
                 write!(f, "the solver {}", Refusal::TooDense { numbers, most })
             }
@@ -309,10 +298,7 @@ impl fmt::Display for Error {
             Self::Invalid(what) | Self::Callback(what) => f.write_str(what),
             Self::Unsupported { method, why } => write!(f, "{method} {why}"),
             Self::Dimension { expected, found } => {
-                write!(
-                    f,
-                    "the state has {found} numbers, but the system needs {expected}"
-                )
+                write!(f, "the state has {found} numbers, but the system needs {expected}")
             }
             Self::StepTooSmall { time, step } => write!(
                 f,
@@ -352,9 +338,7 @@ pub(crate) fn share(what: &str, value: f64) -> Result<(), Error> {
     if (0.0..=1.0).contains(&value) {
         Ok(())
     } else {
-        Err(Error::Invalid(format!(
-            "{what} must be a number from 0 to 1, not {value}"
-        )))
+        Err(Error::Invalid(format!("{what} must be a number from 0 to 1, not {value}")))
     }
 }
 
@@ -363,9 +347,7 @@ pub(crate) fn positive(what: &str, value: f64) -> Result<(), Error> {
     if value.is_finite() && value > 0.0 {
         Ok(())
     } else {
-        Err(Error::Invalid(format!(
-            "{what} must be a finite number above 0, not {value}"
-        )))
+        Err(Error::Invalid(format!("{what} must be a finite number above 0, not {value}")))
     }
 }
 

@@ -44,9 +44,7 @@ impl Joint {
     /// Lists the particles, each with the sign of its gradients.
     pub fn parts(&self) -> impl Iterator<Item = (usize, f64)> {
         let [i, j] = self.ends;
-        [(i, 1.0), (j, -1.0)]
-            .into_iter()
-            .take(if i == j { 1 } else { 2 })
+        [(i, 1.0), (j, -1.0)].into_iter().take(if i == j { 1 } else { 2 })
     }
 
     /// Returns the row of the first end less that of the second, if there is one.

@@ -18,11 +18,7 @@ impl Place {
     /// Creates the place of a point at rest at `position` (m).
     #[must_use]
     pub fn still(position: Vector3<f64>) -> Self {
-        Self {
-            position,
-            velocity: Vector3::zeros(),
-            acceleration: Vector3::zeros(),
-        }
+        Self { position, velocity: Vector3::zeros(), acceleration: Vector3::zeros() }
     }
 }
 
@@ -76,10 +72,7 @@ impl Turn {
     #[must_use]
     pub fn orientation(&self, t: f64) -> Orientation {
         let (angle, rate) = self.at(t);
-        Orientation {
-            rotation: rotation(self.axis * angle),
-            spin: self.axis * rate,
-        }
+        Orientation { rotation: rotation(self.axis * angle), spin: self.axis * rate }
     }
 }
 
@@ -88,11 +81,7 @@ impl Turn {
 pub fn rotation(about: Vector3<f64>) -> Matrix3<f64> {
     let angle = about.norm();
     let (sin, cos) = libm::sincos(angle);
-    let axis = if angle > 0.0 {
-        about / angle
-    } else {
-        Vector3::zeros()
-    };
+    let axis = if angle > 0.0 { about / angle } else { Vector3::zeros() };
     let turned =
         |e: Vector3<f64>| e * cos + axis.cross(&e) * sin + axis * (axis.dot(&e) * (1.0 - cos));
     Matrix3::from_columns(&[Vector3::x(), Vector3::y(), Vector3::z()].map(turned))
@@ -120,16 +109,9 @@ impl Pose {
     /// Returns the place of a point of the body, given relative to the origin before any turn (m).
     #[must_use]
     pub fn of(&self, point: Vector3<f64>) -> Place {
-        let Place {
-            position,
-            velocity,
-            acceleration,
-        } = self.place;
+        let Place { position, velocity, acceleration } = self.place;
         match self.orientation {
-            None => Place {
-                position: position + point,
-                ..self.place
-            },
+            None => Place { position: position + point, ..self.place },
             Some(Orientation { rotation, spin }) => {
                 let arm = rotation * point;
                 let along = spin.cross(&arm);
@@ -145,15 +127,13 @@ impl Pose {
     /// Converts a vector from the axes of the world to those of the body.
     #[must_use]
     pub fn inwards(&self, vector: Vector3<f64>) -> Vector3<f64> {
-        self.orientation
-            .map_or(vector, |turned| turned.rotation.tr_mul(&vector))
+        self.orientation.map_or(vector, |turned| turned.rotation.tr_mul(&vector))
     }
 
     /// Converts a vector from the axes of the body to those of the world.
     #[must_use]
     pub fn outwards(&self, vector: Vector3<f64>) -> Vector3<f64> {
-        self.orientation
-            .map_or(vector, |turned| turned.rotation * vector)
+        self.orientation.map_or(vector, |turned| turned.rotation * vector)
     }
 }
 
@@ -230,12 +210,7 @@ impl Path {
     pub fn at(&self, t: f64) -> Place {
         match *self {
             Self::Still(position) => Place::still(position),
-            Self::Sine {
-                center,
-                amplitude,
-                rate,
-                phase,
-            } => {
+            Self::Sine { center, amplitude, rate, phase } => {
                 let (sin, cos) = libm::sincos(rate * t + phase);
                 Place {
                     position: center + amplitude * sin,
@@ -243,20 +218,8 @@ impl Path {
                     acceleration: amplitude * (-rate * rate * sin),
                 }
             }
-            Self::Line {
-                from,
-                to,
-                start,
-                end,
-            } => line([from, to], [start, end], t),
-            Self::Turn {
-                turn,
-                arm,
-                from,
-                to,
-                start,
-                end,
-            } => {
+            Self::Line { from, to, start, end } => line([from, to], [start, end], t),
+            Self::Turn { turn, arm, from, to, start, end } => {
                 let axis = Pose {
                     place: line([from, to], [start, end], t),
                     orientation: Some(turn.orientation(t)),
@@ -307,9 +270,7 @@ impl Path {
         match self {
             Self::Still(_) | Self::Sine { .. } => [f64::INFINITY; 4],
             Self::Line { start, end, .. } => [*start, *end, *start, *end],
-            Self::Turn {
-                turn, start, end, ..
-            } => {
+            Self::Turn { turn, start, end, .. } => {
                 let [from, to] = turn.known_times();
                 [*start, *end, from, to]
             }
@@ -331,36 +292,16 @@ impl Path {
     /// acceleration is infinite where the motion begins or ends within it.
     pub(crate) fn bounds(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         let uniform = |way: Vector3<f64>, start: f64, end: f64| {
-            if from < end && to > start && end > start {
-                way.norm() / (end - start)
-            } else {
-                0.0
-            }
+            if from < end && to > start && end > start { way.norm() / (end - start) } else { 0.0 }
         };
         let [speed, acceleration] = match self {
             Self::Still(_) => [0.0; 2],
-            Self::Sine {
-                amplitude, rate, ..
-            } => [1, 2].map(|power| amplitude.norm() * rate.abs().powi(power)),
-            Self::Line {
-                from: a,
-                to: b,
-                start,
-                end,
-            } => [uniform(b - a, *start, *end), 0.0],
-            Self::Turn {
-                turn,
-                arm,
-                from: a,
-                to: b,
-                start,
-                end,
-            } => {
-                let rate = if turn.is_on([from, to]) {
-                    turn.rate.abs()
-                } else {
-                    0.0
-                };
+            Self::Sine { amplitude, rate, .. } => {
+                [1, 2].map(|power| amplitude.norm() * rate.abs().powi(power))
+            }
+            Self::Line { from: a, to: b, start, end } => [uniform(b - a, *start, *end), 0.0],
+            Self::Turn { turn, arm, from: a, to: b, start, end } => {
+                let rate = if turn.is_on([from, to]) { turn.rate.abs() } else { 0.0 };
                 let along = uniform(b - a, *start, *end);
                 [along + rate * arm.norm(), rate * rate * arm.norm()]
             }
@@ -378,10 +319,6 @@ fn line([from, to]: [Vector3<f64>; 2], [start, end]: [f64; 2], t: f64) -> Place 
         Place::still(to)
     } else {
         let velocity = (to - from) / (end - start);
-        Place {
-            position: from + velocity * (t - start),
-            velocity,
-            acceleration: Vector3::zeros(),
-        }
+        Place { position: from + velocity * (t - start), velocity, acceleration: Vector3::zeros() }
     }
 }

@@ -30,11 +30,7 @@ impl Pin {
     /// Creates a pin that never lets go.
     #[must_use]
     pub fn new(particle: usize, path: Path) -> Self {
-        Self {
-            particle,
-            path,
-            until: None,
-        }
+        Self { particle, path, until: None }
     }
 
     /// Returns whether the particle is held at time t (s).

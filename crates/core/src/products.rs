@@ -39,12 +39,7 @@ pub struct SolverHints {
 
 impl Default for SolverHints {
     fn default() -> Self {
-        Self {
-            reach: f64::INFINITY,
-            speed: 1.0,
-            assembly: 4.0,
-            iteration: ITERATION,
-        }
+        Self { reach: f64::INFINITY, speed: 1.0, assembly: 4.0, iteration: ITERATION }
     }
 }
 

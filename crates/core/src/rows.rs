@@ -154,11 +154,7 @@ impl Registers {
     /// Creates registers for `depth` rows at a time, of `cols` particles each.
     pub(crate) fn new(depth: usize, cols: usize) -> Self {
         let window = || Window::new(depth, 6, cols);
-        Self {
-            y: window(),
-            sum: window(),
-            stage: window(),
-        }
+        Self { y: window(), sum: window(), stage: window() }
     }
 
     /// Starts the next Runge-Kutta substep from the current stage values.
@@ -169,10 +165,7 @@ impl Registers {
     /// Extrapolates the velocities of a row, after it stored them as the sum.
     pub(crate) fn look_ahead(&mut self, row: usize) {
         for column in 3..6 {
-            let (stage, ahead) = (
-                self.stage.column_mut(row, column),
-                self.y.column(row, column),
-            );
+            let (stage, ahead) = (self.stage.column_mut(row, column), self.y.column(row, column));
             self.sum.column_mut(row, column).copy_from_slice(stage);
             for (v, ahead) in stage.iter_mut().zip(ahead) {
                 *v += ahead;
@@ -246,14 +239,7 @@ impl Window {
         let data = vec![0.0; depth * columns * stride + PAD];
         // The start of a cache line, which is eight numbers long.
         let start = data.as_ptr().align_offset(PAD * size_of::<f64>()).min(PAD);
-        Self {
-            data,
-            start,
-            depth,
-            columns,
-            stride,
-            cols,
-        }
+        Self { data, start, depth, columns, stride, cols }
     }
 
     #[inline]

@@ -229,10 +229,7 @@ impl StepLimits {
     /// Returns these limits, and the scene's `own` ones in place of those that are `None`.
     #[must_use]
     pub fn or(self, own: Self) -> Self {
-        Self {
-            absolute: self.absolute.or(own.absolute),
-            max_step: self.max_step.or(own.max_step),
-        }
+        Self { absolute: self.absolute.or(own.absolute), max_step: self.max_step.or(own.max_step) }
     }
 }
 
@@ -287,10 +284,7 @@ impl Scene {
             return (Vector3::zeros(), 1.0);
         }
         if n == 0 {
-            let largest = self
-                .state
-                .iter()
-                .fold(0.0, |most: f64, y| most.max(y.abs()));
+            let largest = self.state.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
             return (Vector3::zeros(), if largest > 0.0 { largest } else { 1.0 });
         }
         let positions = &self.state[..3 * n];
@@ -303,9 +297,7 @@ impl Scene {
                 for body in network.bodies() {
                     radius = radius.max(apart(body.center()) + body.radius());
                 }
-                let rests = network
-                    .all_springs()
-                    .map(|spring| 0.5 * spring.law.rest_length);
+                let rests = network.all_springs().map(|spring| 0.5 * spring.law.rest_length);
                 radius = rests.fold(radius, f64::max);
                 self.reach_of_a_point(network, middle)
             }
@@ -327,16 +319,11 @@ impl Scene {
         });
         let nearest = obstacles.filter(|away| *away > 0.0).reduce(f64::min);
         let (_, v) = network.halves(&self.state);
-        let speed = (0..network.particles())
-            .map(|i| row(v, i).norm())
-            .fold(0.0, f64::max);
+        let speed = (0..network.particles()).map(|i| row(v, i).norm()).fold(0.0, f64::max);
         let fall = network.gravity().map_or(0.0, |g| 0.5 * g.norm());
         let motion = motions.fold(0.0, f64::max);
         let lengths = [motion, nearest.unwrap_or(0.0), speed.max(fall)];
-        lengths
-            .into_iter()
-            .find(|length| *length > 0.0)
-            .unwrap_or(0.0)
+        lengths.into_iter().find(|length| *length > 0.0).unwrap_or(0.0)
     }
 
     /// Returns the errors that a step may make under a relative tolerance.
@@ -367,9 +354,8 @@ fn middle(x: &[f64]) -> Vector3<f64> {
     let n = x.len() / 3;
     Vector3::from_fn(|axis, _| {
         let column = x[axis * n..(axis + 1) * n].iter();
-        let (low, high) = column.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
-            (low.min(x), high.max(x))
-        });
+        let (low, high) = column
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
         0.5 * (low + high)
     })
 }

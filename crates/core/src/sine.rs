@@ -46,16 +46,10 @@ pub(crate) fn sine(a: f64) -> f64 {
 /// Replaces numbers (rad) by their sines.
 #[inline(always)]
 pub(crate) fn sines(all: &mut [f64]) {
-    let is_far = all
-        .iter()
-        .fold(false, |far, a| far | (a.abs() > MAX_ARGUMENT));
+    let is_far = all.iter().fold(false, |far, a| far | (a.abs() > MAX_ARGUMENT));
     if is_far {
         for a in all {
-            *a = if a.abs() > MAX_ARGUMENT {
-                libm::sin(*a)
-            } else {
-                of_near(*a)
-            };
+            *a = if a.abs() > MAX_ARGUMENT { libm::sin(*a) } else { of_near(*a) };
         }
     } else {
         for a in all {

@@ -45,11 +45,7 @@ impl SpringLaw {
         at_least(0.0, "a spring's stiffness", stiffness)?;
         at_least(0.0, "a spring's rest length", rest_length)?;
         at_least(0.0, "a spring's damping", damping)?;
-        Ok(Self {
-            stiffness,
-            rest_length,
-            damping,
-        })
+        Ok(Self { stiffness, rest_length, damping })
     }
 
     /// Multiplies the stiffness and the damping by these factors.

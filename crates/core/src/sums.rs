@@ -32,11 +32,7 @@ pub(crate) fn add_up<const N: usize, const M: usize>(
 ) -> [f64; M] {
     let blocks = rows.len().div_ceil(block);
     if blocks < 2 {
-        return Arch::new().dispatch(Dispatched::<N, M, _> {
-            task,
-            rows,
-            columns,
-        });
+        return Arch::new().dispatch(Dispatched::<N, M, _> { task, rows, columns });
     }
     // The order of the sum follows from the number of blocks alone.
     let above = blocks.next_power_of_two() / 2 * block;
@@ -124,10 +120,7 @@ mod tests {
         };
         let one = sum(1);
         let expected: f64 = numbers.iter().map(|a| a * a).sum();
-        assert!(
-            (one - expected).abs() < 1e-12 * expected,
-            "{one} {expected}"
-        );
+        assert!((one - expected).abs() < 1e-12 * expected, "{one} {expected}");
         for bands in [2, 3, 8] {
             assert_eq!(sum(bands).to_bits(), one.to_bits(), "{bands} bands");
         }

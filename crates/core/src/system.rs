@@ -38,8 +38,7 @@ pub(crate) fn without_derivative(system: &dyn ParticleSystem) -> Vec<usize> {
         is_moved[*k as usize] = true;
     }
     let all = is_moved.into_iter().enumerate();
-    all.filter_map(|(k, is_moved)| (!is_moved).then_some(k))
-        .collect()
+    all.filter_map(|(k, is_moved)| (!is_moved).then_some(k)).collect()
 }
 
 /// Returns the size of a number y of a system, to which the step of a difference quotient is in
@@ -447,9 +446,7 @@ impl<M: Mechanics> ParticleSystem for M {
     }
 
     fn mechanics(&self) -> Option<&dyn Mechanics> {
-        Mechanics::rigid(self)
-            .is_none()
-            .then_some(self as &dyn Mechanics)
+        Mechanics::rigid(self).is_none().then_some(self as &dyn Mechanics)
     }
 
     fn rigid(&self) -> Option<RigidView<'_>> {

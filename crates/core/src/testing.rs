@@ -26,9 +26,7 @@ pub(crate) fn cloth(grid: Grid, damping_time: f64) -> Scene {
     network.set_drag(0.006).unwrap();
     for corner in [0, cols - 1] {
         let [x, y, z] = [0, n, 2 * n].map(|axis| state[axis + corner]);
-        network
-            .pin(corner, Path::Still(Vector3::new(x, y, z)))
-            .unwrap();
+        network.pin(corner, Path::Still(Vector3::new(x, y, z))).unwrap();
         for axis in 3..6 {
             state[axis * n + corner] = 0.0;
         }
@@ -44,11 +42,7 @@ pub(crate) fn residual(network: &Network, h: f64, y: &[f64], end: &[f64]) -> f64
     let mut f = vec![0.0; 3 * n];
     network.forces(h, x, v, &mut f);
     let (mut worst, mut most): (f64, f64) = (0.0, 0.0);
-    for (k, f) in f
-        .iter()
-        .enumerate()
-        .filter(|(k, _)| !network.is_pinned(k % n))
-    {
+    for (k, f) in f.iter().enumerate().filter(|(k, _)| !network.is_pinned(k % n)) {
         let gained = network.masses()[k % n] * (v[k] - y[3 * n + k]);
         worst = worst.max((gained - h * f).abs());
         most = most.max(gained.abs());

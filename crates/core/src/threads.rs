@@ -21,11 +21,7 @@ pub(crate) fn threads(particles: usize) -> usize {
 /// Runs `run` inside the thread pool, if a system of that many particles is shared among threads,
 /// so that no part of a step has to wake the pool.
 pub(crate) fn among_threads<R: Send>(particles: usize, run: impl FnOnce() -> R + Send) -> R {
-    if threads(particles) > 1 {
-        rayon::scope(|_| run())
-    } else {
-        run()
-    }
+    if threads(particles) > 1 { rayon::scope(|_| run()) } else { run() }
 }
 
 /// Columns of a matrix whose rows are split among threads.
@@ -36,9 +32,7 @@ pub(crate) fn split_off<'a, const N: usize>(
     columns: &mut Columns<'a, N>,
     at: usize,
 ) -> Columns<'a, N> {
-    columns
-        .each_mut()
-        .map(|column| column.split_off_mut(..at).unwrap_or_default())
+    columns.each_mut().map(|column| column.split_off_mut(..at).unwrap_or_default())
 }
 
 /// Calls `run` on bands of the rows, each of `cols` particles, in parallel. Each call gets the part
@@ -66,10 +60,7 @@ pub(crate) fn fork<const N: usize>(
 /// Calls `run` on each element with its index, in parallel if there are many.
 pub(crate) fn each<T: Send>(things: &mut [T], run: &(impl Fn(usize, &mut T) + Sync)) {
     if threads(things.len()) > 1 {
-        let all = things
-            .par_iter_mut()
-            .enumerate()
-            .with_min_len(MIN_PARTICLES / 2);
+        let all = things.par_iter_mut().enumerate().with_min_len(MIN_PARTICLES / 2);
         all.for_each(|(k, thing)| run(k, thing));
     } else {
         let all = things.iter_mut().enumerate();

@@ -25,10 +25,7 @@ impl Work {
     /// Creates the work of a number of evaluations, and nothing else.
     #[must_use]
     pub fn of(evaluations: u64) -> Self {
-        Self {
-            evaluations,
-            ..Self::default()
-        }
+        Self { evaluations, ..Self::default() }
     }
 
     /// Returns the total cost, in evaluations.

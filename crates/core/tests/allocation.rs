@@ -55,11 +55,7 @@ fn no_step_allocates() {
             });
             let control = setup.defaults.control_of(method);
             let Ok(mut run) = Simulation::new(setup.scene, method, control) else {
-                assert!(
-                    method
-                        .check(entry.build(None).unwrap().scene.model.system())
-                        .is_err()
-                );
+                assert!(method.check(entry.build(None).unwrap().scene.model.system()).is_err());
                 continue;
             };
             run.set_wind(true);
@@ -80,10 +76,7 @@ fn no_step_allocates() {
 /// later step allocates.
 #[test]
 fn no_step_in_the_air_allocates_but_the_first() {
-    for method in integrators::METHODS
-        .iter()
-        .filter(|m| !m.positions_only() && !m.plain_only())
-    {
+    for method in integrators::METHODS.iter().filter(|m| !m.positions_only() && !m.plain_only()) {
         let mut scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
         if let Model::Network(network) = &mut scene.model {
             let grid = network.sheets().next().unwrap().grid();
@@ -107,18 +100,13 @@ fn constraints_allocate_nothing() {
         network.pin(0, Path::Still(Vector3::zeros())).unwrap();
         for i in 0..rods {
             let (j, length) = (i + 1, 1.0);
-            network
-                .add_constraint(Constraint::Rod { i, j, length })
-                .unwrap();
+            network.add_constraint(Constraint::Rod { i, j, length }).unwrap();
         }
         let mut state = vec![0.0; 6 * (rods + 1)];
         for (i, x) in state[..=rods].iter_mut().enumerate() {
             *x = i as f64;
         }
-        for method in integrators::METHODS
-            .iter()
-            .filter(|m| m.check(&network).is_ok())
-        {
+        for method in integrators::METHODS.iter().filter(|m| m.check(&network).is_ok()) {
             let model = Model::Network(Box::new(network.clone()));
             let scene = Scene::new("rods", model, state.clone());
             let mut run = Simulation::new(scene, method, method.default_control).unwrap();
@@ -150,10 +138,7 @@ fn no_step_that_tears_nothing_allocates() {
 /// Scratch of a method is reallocated when the scene is adjusted, not during steps.
 #[test]
 fn no_step_after_an_adjustment_allocates() {
-    for method in integrators::METHODS
-        .iter()
-        .filter(|m| !m.positions_only() && !m.plain_only())
-    {
+    for method in integrators::METHODS.iter().filter(|m| !m.positions_only() && !m.plain_only()) {
         let mut scene = a3_scenes::find("cloth").unwrap().build(None).unwrap().scene;
         let own = scene.model.network().unwrap().clone();
         if let Model::Network(network) = &mut scene.model {

@@ -67,8 +67,7 @@ pub fn max_step(text: &str) -> Result<f64, String> {
 
 /// Reads the number of a particle.
 pub fn particle(text: &str) -> Result<usize, String> {
-    text.parse()
-        .map_err(|_| "a particle is a whole number from 0, such as 12".into())
+    text.parse().map_err(|_| "a particle is a whole number from 0, such as 12".into())
 }
 
 /// Reads a number of threads.
@@ -99,23 +98,15 @@ pub fn solver(text: &str) -> Result<&'static Method, String> {
         Some(name) => {
             format!("there is no such solver; did you mean {name}? `a3 solvers` lists all of them")
         }
-        None => format!(
-            "there is no such solver; the solvers are {}",
-            letters_and_names()
-        ),
+        None => format!("there is no such solver; the solvers are {}", letters_and_names()),
     })
 }
 
 /// Returns the command, the solver or the letter of a solver that is most like a word, if one is.
 pub fn nearest_of(text: &str, commands: &[&str]) -> Option<String> {
-    let letters: Vec<_> = integrators::METHODS
-        .iter()
-        .filter_map(|m| Some(m.letter?.to_string()))
-        .collect();
-    let names = commands
-        .iter()
-        .copied()
-        .chain(integrators::METHODS.iter().map(|m| m.name));
+    let letters: Vec<_> =
+        integrators::METHODS.iter().filter_map(|m| Some(m.letter?.to_string())).collect();
+    let names = commands.iter().copied().chain(integrators::METHODS.iter().map(|m| m.name));
     nearest(text, names.chain(letters.iter().map(String::as_str))).map(str::to_owned)
 }
 
@@ -130,8 +121,6 @@ pub fn solver_and_step(text: &str) -> Result<(&'static Method, Option<f64>), Str
 /// Lists the solvers that have letters.
 pub fn letters_and_names() -> String {
     let names = integrators::METHODS.iter();
-    let names: Vec<_> = names
-        .filter_map(|m| Some(format!("{} ({})", m.letter?, m.name)))
-        .collect();
+    let names: Vec<_> = names.filter_map(|m| Some(format!("{} ({})", m.letter?, m.name))).collect();
     names.join(", ")
 }

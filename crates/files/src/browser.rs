@@ -65,10 +65,7 @@ pub fn address(words: &str) -> String {
     ];
     let words: String = js_sys::encode_uri_component(words).into();
     // These may stand in a query, and are easier to read.
-    let words = words
-        .replace("%20", "+")
-        .replace("%3A", ":")
-        .replace("%2F", "/");
+    let words = words.replace("%20", "+").replace("%3A", ":").replace("%2F", "/");
     format!("{origin}{path}?{words}")
 }
 
@@ -84,8 +81,7 @@ pub fn set_words(words: &str) {
 pub fn download(name: &str, bytes: &[u8]) -> Result<(), &'static str> {
     let parts = Array::of1(&Uint8Array::from(bytes));
     let blob = Blob::new_with_u8_array_sequence(&parts);
-    blob.map_err(|_| "the browser has no memory for the file")
-        .and_then(|blob| offer(name, &blob))
+    blob.map_err(|_| "the browser has no memory for the file").and_then(|blob| offer(name, &blob))
 }
 
 /// Offers the present picture of the canvas as a download with this name.

@@ -61,11 +61,7 @@ impl Kept {
     /// Returns the same run, of a scene that was edited: its text in TOML, and the scene before
     /// that.
     pub fn of_edited(self, text: String, source: &Source, grid: Option<Grid>, own: &Scene) -> Self {
-        Self {
-            scene: identity(source, grid, own),
-            edited: Some(text),
-            ..self
-        }
+        Self { scene: identity(source, grid, own), edited: Some(text), ..self }
     }
 
     /// Writes the file.
@@ -187,11 +183,8 @@ impl Extremes {
     /// Updates the extremes with the present state.
     pub fn observe(&mut self, simulation: &Simulation) {
         if let Some(total) = simulation.energy().map(|energy| energy.total()) {
-            let energy = self.energy.get_or_insert(Energy {
-                begin: total,
-                end: total,
-                largest_drift: 0.0,
-            });
+            let energy =
+                self.energy.get_or_insert(Energy { begin: total, end: total, largest_drift: 0.0 });
             energy.end = total;
             energy.largest_drift = energy.largest_drift.max((total - energy.begin).abs());
         }
@@ -210,10 +203,7 @@ impl Extremes {
     /// Returns a copy whose stretch is not a number.
     #[cfg(test)]
     pub fn spoiled(self) -> Self {
-        Self {
-            stretch: Some(f64::NAN),
-            ..self
-        }
+        Self { stretch: Some(f64::NAN), ..self }
     }
 }
 
@@ -260,10 +250,7 @@ mod tests {
             let why = Kept::parse(&kept.bytes().ok().unwrap()).err().unwrap();
             assert!(why.starts_with("this checkpoint is damaged: "), "{why}");
         };
-        for control in [
-            a3_core::Control::Step(5e-324),
-            a3_core::Control::Tolerance(f64::NAN),
-        ] {
+        for control in [a3_core::Control::Step(5e-324), a3_core::Control::Tolerance(f64::NAN)] {
             refused(&|kept| kept.checkpoint.run.control = control);
         }
         let mut extremes = Extremes::default();
@@ -310,10 +297,7 @@ mod tests {
             assert_eq!(forge(place, 0.5 * next), Ok(()));
             for number in [5e-324, -1e-3, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                 let why = forge(place, number).unwrap_err();
-                assert!(
-                    why.contains("a step must be 0 or a positive number"),
-                    "{why}"
-                );
+                assert!(why.contains("a step must be 0 or a positive number"), "{why}");
             }
         }
         for place in ["/within/times/0", "/within/times/1"] {

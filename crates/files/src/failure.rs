@@ -120,15 +120,9 @@ impl fmt::Display for InputError {
             Self::Unknown(why) => f.write_str(why),
             Self::File { file, why } => write!(f, "{file}: {why}"),
             Self::Text { file: None, fault } => fault.fmt(f),
-            Self::Text {
-                file: Some(file),
-                fault,
-            } => {
+            Self::Text { file: Some(file), fault } => {
                 let line = fault.line.map(|line| format!(":{line}"));
-                let fault = Fault {
-                    line: None,
-                    ..fault.clone()
-                };
+                let fault = Fault { line: None, ..fault.clone() };
                 write!(f, "{file}{}: {fault}", line.unwrap_or_default())
             }
         }

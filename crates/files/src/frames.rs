@@ -40,24 +40,14 @@ impl FrameTimes {
                  --until"
             )));
         }
-        Ok(Self {
-            from,
-            rate,
-            first: 0,
-            count: count as usize,
-            until,
-        })
+        Ok(Self { from, rate, first: 0, count: count as usize, until })
     }
 
     /// Returns the frames at a time (s) or later; at least the last one.
     pub fn since(self, time: f64) -> Self {
         let before = self.times().filter(|t| *t < time).count();
         let before = before.min(self.count - 1);
-        Self {
-            first: self.first + before,
-            count: self.count - before,
-            ..self
-        }
+        Self { first: self.first + before, count: self.count - before, ..self }
     }
 
     /// Returns the times of all frames (s).
@@ -169,11 +159,6 @@ mod tests {
         assert_eq!(sequence.file(41), Path::new("f#/cloth-042.png"));
         assert!(sequence.check(999).is_ok() && sequence.check(1000).is_err());
         assert_eq!(Sequence::of(Path::new("f#/cloth.png")), None);
-        assert!(
-            Sequence::of(Path::new("#-#.png"))
-                .unwrap()
-                .check(1)
-                .is_err()
-        );
+        assert!(Sequence::of(Path::new("#-#.png")).unwrap().check(1).is_err());
     }
 }

@@ -60,10 +60,7 @@ impl Sought {
                 format!("no shorter step holds, down to {}", named(control))
             }
             Self::Failed(control) => {
-                format!(
-                    "no tolerance that was tried holds, the last was {}",
-                    named(control)
-                )
+                format!("no tolerance that was tried holds, the last was {}", named(control))
             }
             Self::Beyond(limit) => format!("only steps below {} s hold", Rounded(limit)),
             Self::Untried => "no other one was tried".into(),
@@ -233,11 +230,7 @@ impl<'a> Trials<'a> {
             Err(tried) => return tried,
         };
         let broken = again.worst_constraint().is_some_and(|c| c.is_visible());
-        if again.gained().is_none() && !broken {
-            Tried::Holds
-        } else {
-            Tried::Fails
-        }
+        if again.gained().is_none() && !broken { Tried::Holds } else { Tried::Fails }
     }
 
     /// Runs from the start of the scene to the end of the trial, unless the run diverges.
@@ -285,12 +278,7 @@ mod tests {
             poisson = 0.4\nmodel = 'neo-hookean'\ndamping = 0.005\nat = [0.25, 0.8, 0]\n";
         let soft = "[[cloth]]\ngrid = [8, 8]\nwidth = 1\ndensity = 0.3\nstiffness = [20, 10, 1]\n\
             damping_ratio = 0.2\nat = [0, 1, 0]\npin = [{ at = ['top'] }]\n";
-        for (own, holds) in [
-            (hammock, false),
-            (cube, false),
-            (solid, false),
-            (soft, true),
-        ] {
+        for (own, holds) in [(hammock, false), (cube, false), (solid, false), (soft, true)] {
             let text = format!("gravity = [0, -9.81, 0]\nfloor = 0\n{own}");
             let begun = || {
                 let scene = Description::parse(&text).unwrap();
@@ -309,12 +297,7 @@ mod tests {
 
     #[test]
     fn steps_are_rounded_down_to_a_digit() {
-        for (most, expected) in [
-            (0.013, 0.01),
-            (0.031, 0.03),
-            (0.000_35, 0.000_3),
-            (0.09, 0.09),
-        ] {
+        for (most, expected) in [(0.013, 0.01), (0.031, 0.03), (0.000_35, 0.000_3), (0.09, 0.09)] {
             assert_eq!(rounded(most), expected);
         }
     }

@@ -27,11 +27,7 @@ impl Keeper {
                 path.display()
             )));
         }
-        Ok(Self {
-            path: path.into(),
-            every,
-            last: Instant::now(),
-        })
+        Ok(Self { path: path.into(), every, last: Instant::now() })
     }
 
     /// Writes the run that `kept` returns, if it is time to.
@@ -48,9 +44,6 @@ impl Keeper {
     pub fn write(&self, kept: &Kept) -> Result<String, Failure> {
         kept.write(&self.path)?;
         let time = kept.checkpoint.time();
-        Ok(format!(
-            "{} has the run at t = {time:.4} s",
-            self.path.display()
-        ))
+        Ok(format!("{} has the run at t = {time:.4} s", self.path.display()))
     }
 }

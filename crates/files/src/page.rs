@@ -58,9 +58,7 @@ pub mod output {
     ) -> Result<PathBuf, Failure> {
         let scene = part_of_name(scene);
         let name = |k: usize| PathBuf::from(format!("a3-{scene}-{k}.{extension}"));
-        let path = (1..=usize::MAX)
-            .map(name)
-            .find(|path| files::read(path).is_none());
+        let path = (1..=usize::MAX).map(name).find(|path| files::read(path).is_none());
         let path = path.unwrap_or_default();
         write(&path, bytes)?;
         Ok(path)

@@ -34,9 +34,7 @@ pub fn march(
         // Whole steps that end before the last one. If only rounding makes the last one shorter, it
         // is whole too.
         let left = (until - simulation.time()) / step;
-        let whole = (left - 1.0 - Simulation::STEP_END_TOLERANCE)
-            .ceil()
-            .min(stride);
+        let whole = (left - 1.0 - Simulation::STEP_END_TOLERANCE).ceil().min(stride);
         if whole < 1.0 {
             break;
         }

@@ -15,11 +15,7 @@ pub struct Report {
 impl Report {
     /// Returns the report as text for the terminal.
     pub fn text(&self) -> String {
-        let rows = if self.rows.is_empty() {
-            String::new()
-        } else {
-            table(&self.rows)
-        };
+        let rows = if self.rows.is_empty() { String::new() } else { table(&self.rows) };
         format!("{}{rows}{}", self.head, self.foot)
     }
 }
@@ -38,12 +34,7 @@ const MIN_WIDTH: usize = 10;
 /// a space is aligned to the right. Long cells of a last column are wrapped.
 pub fn table(rows: &[Vec<String>]) -> String {
     let headings = &rows[0];
-    let width = |c: usize| {
-        rows.iter()
-            .map(|row| row[c].trim().chars().count())
-            .max()
-            .unwrap_or(0)
-    };
+    let width = |c: usize| rows.iter().map(|row| row[c].trim().chars().count()).max().unwrap_or(0);
     let widths: Vec<_> = (0..headings.len()).map(width).collect();
     let cell = |(c, cell): (usize, &String)| {
         let (cell, width) = (cell.trim(), widths[c]);
@@ -90,22 +81,13 @@ mod tests {
     #[test]
     fn a_table_fits_a_terminal() {
         let rows = |rows: &[[&str; 3]]| {
-            rows.iter()
-                .map(|row| row.map(String::from).to_vec())
-                .collect::<Vec<_>>()
+            rows.iter().map(|row| row.map(String::from).to_vec()).collect::<Vec<_>>()
         };
         let long = "word ".repeat(30);
-        let all = [
-            ["name", " number", "words"],
-            ["a", "1", &long],
-            ["b", "22", "short"],
-        ];
+        let all = [["name", " number", "words"], ["a", "1", &long], ["b", "22", "short"]];
         let text = table(&rows(&all));
         let lines: Vec<_> = text.lines().collect();
-        assert!(
-            lines.iter().all(|line| line.chars().count() <= WIDTH),
-            "{text}"
-        );
+        assert!(lines.iter().all(|line| line.chars().count() <= WIDTH), "{text}");
         assert_eq!(lines[0], "name  number  words");
         assert!(lines[1].starts_with("a          1  word word"), "{text}");
         assert!(lines[2].starts_with("              word word"), "{text}");
@@ -113,11 +95,6 @@ mod tests {
         assert_eq!(lines.last(), Some(&"b         22  short"));
         // A column that begins too far to the right stays whole.
         let wide = ["x".repeat(75), "1".into(), long.clone()];
-        assert_eq!(
-            table(&[all[0].map(String::from).to_vec(), wide.to_vec()])
-                .lines()
-                .count(),
-            2
-        );
+        assert_eq!(table(&[all[0].map(String::from).to_vec(), wide.to_vec()]).lines().count(), 2);
     }
 }

@@ -12,9 +12,7 @@ pub fn short(value: f64, digits: usize) -> f64 {
 pub const FEW: &[f64] = &[1.0, 2.0, 5.0, 10.0];
 
 /// Round numbers from 1 to 10, each at least four fifths of the next.
-pub const MANY: &[f64] = &[
-    1.0, 1.2, 1.5, 1.8, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0,
-];
+pub const MANY: &[f64] = &[1.0, 1.2, 1.5, 1.8, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0];
 
 /// Rounds a value above 0 up to a round number: one of `rounds`, from 1 to 10, times a power of
 /// ten.
@@ -33,19 +31,10 @@ mod tests {
         for k in -500..500 {
             let value = 1.037_f64.powi(k);
             let up = round_up(value, MANY);
-            assert!(
-                up >= value && value >= 0.8 * up * (1.0 - 1e-12),
-                "{value} {up}"
-            );
+            assert!(up >= value && value >= 0.8 * up * (1.0 - 1e-12), "{value} {up}");
             assert!(round_up(value, FEW) >= up);
         }
-        assert_eq!(
-            [1.8, 1.81, 0.008].map(|value| round_up(value, MANY)),
-            [1.8, 2.0, 0.008]
-        );
-        assert_eq!(
-            [2.0, 2.1, 70.0].map(|value| round_up(value, FEW)),
-            [2.0, 5.0, 100.0]
-        );
+        assert_eq!([1.8, 1.81, 0.008].map(|value| round_up(value, MANY)), [1.8, 2.0, 0.008]);
+        assert_eq!([2.0, 2.1, 70.0].map(|value| round_up(value, FEW)), [2.0, 5.0, 100.0]);
     }
 }

@@ -45,12 +45,8 @@ impl<T: Row> Rows<T> {
     /// # Errors
     /// The file holds something else, or cannot be read.
     pub fn open(path: Option<&Path>, name: &'static str) -> Result<Self, Failure> {
-        let mut rows = Self {
-            path: path.map(Path::to_owned),
-            all: vec![],
-            name,
-            seen: String::new(),
-        };
+        let mut rows =
+            Self { path: path.map(Path::to_owned), all: vec![], name, seen: String::new() };
         let Some(path) = path else { return Ok(rows) };
         output::check(path, &["csv", "json"])?;
         rows.look(path).map_err(Failure::usage)?;
@@ -153,9 +149,7 @@ pub fn write<T: Serialize>(rows: &[T], json: bool) -> Result<String, String> {
 
 /// Writes the line of a row in CSV, below a line of keys if `names`.
 pub fn csv_lines(row: &impl Serialize, names: bool) -> Result<String, String> {
-    let mut writer = csv::WriterBuilder::new()
-        .has_headers(names)
-        .from_writer(vec![]);
+    let mut writer = csv::WriterBuilder::new().has_headers(names).from_writer(vec![]);
     writer.serialize(row).map_err(|e| e.to_string())?;
     let bytes = writer.into_inner().map_err(|e| e.to_string())?;
     let mut lines = String::from_utf8(bytes).map_err(|e| e.to_string())?;
@@ -185,11 +179,7 @@ pub fn read<T: Row>(text: &str, json: bool) -> Result<Vec<T>, String> {
     if rows.is_empty() && !text.is_empty() {
         return Err("it has no runs".into());
     }
-    let names_checks = !json
-        && text
-            .lines()
-            .next()
-            .is_some_and(|line| line.ends_with(CHECK));
+    let names_checks = !json && text.lines().next().is_some_and(|line| line.ends_with(CHECK));
     if names_checks || rows.iter_mut().any(|row| !row.check().is_empty()) {
         let open = text.strip_suffix(end(json)).unwrap_or_default();
         let begin = open.len().saturating_sub(DIGITS);
@@ -248,11 +238,7 @@ mod tests {
             lost_at: (setting > 0.1).then_some(0.75),
             ..Record::default()
         };
-        vec![
-            record("cloth", 0.01),
-            record("a, \"b\"\nc", 0.2),
-            record("é", 0.1),
-        ]
+        vec![record("cloth", 0.01), record("a, \"b\"\nc", 0.2), record("é", 0.1)]
     }
 
     #[test]
@@ -281,10 +267,7 @@ mod tests {
                     bytes[at] ^= other;
                     // Bytes that are no UTF-8 are refused where the file is read.
                     if let Ok(changed) = String::from_utf8(bytes) {
-                        assert!(
-                            read::<Record>(&changed, json).is_err(),
-                            "byte {at}: {changed}"
-                        );
+                        assert!(read::<Record>(&changed, json).is_err(), "byte {at}: {changed}");
                     }
                 }
             }
@@ -303,10 +286,7 @@ mod tests {
     #[test]
     fn lines_without_checksums_are_believed() {
         let text = write(&records()[..1], false).unwrap();
-        let old: Vec<_> = text
-            .lines()
-            .map(|line| line.rsplit_once(',').unwrap().0)
-            .collect();
+        let old: Vec<_> = text.lines().map(|line| line.rsplit_once(',').unwrap().0).collect();
         assert_eq!(read(&old.join("\n"), false), Ok(records()[..1].to_vec()));
         let (head, _) = text.split_once('\n').unwrap();
         for other in ["buy milk", "buy,milk\n", head, "a,b\n1,2\n", "\n"] {

@@ -56,25 +56,16 @@ impl Request {
             wind.on = true;
         }
         description.self_collision |= on.contact;
-        let swing = Disturbances {
-            swing: on.swing,
-            ..Disturbances::default()
-        };
+        let swing = Disturbances { swing: on.swing, ..Disturbances::default() };
         Self {
             source: self.source.described(description),
-            options: SceneOptions {
-                grid: None,
-                on: swing,
-            },
+            options: SceneOptions { grid: None, on: swing },
         }
     }
 
     /// Returns the same request with another description.
     pub fn with(&self, description: Description) -> Self {
-        Self {
-            source: self.source.described(description),
-            options: self.options,
-        }
+        Self { source: self.source.described(description), options: self.options }
     }
 
     /// Builds the scene, with the wind, the swing and the self-collision of the options.
@@ -176,9 +167,7 @@ pub fn simulate(
     // What is not asked for stays as it is: in some scenes the wind blows from the start.
     if on.wind {
         simulation.set_wind(true);
-        solver
-            .check(simulation.model().system())
-            .map_err(Failure::usage)?;
+        solver.check(simulation.model().system()).map_err(Failure::usage)?;
     }
     simulation.set_swinging(on.swing);
     if on.contact {

@@ -18,11 +18,7 @@ const BUDGET: Duration = Duration::from_secs(3);
 /// Returns the failure of a run that was to last until the time `until` (s). `kept` is a clause
 /// that says what was written.
 pub fn lost(run: &Simulation, error: &Error, kept: &str, until: f64) -> Failure {
-    let kept = if kept.is_empty() {
-        String::new()
-    } else {
-        format!("; {kept}")
-    };
+    let kept = if kept.is_empty() { String::new() } else { format!("; {kept}") };
     Failure::run(format!("{error}{kept}{}", advice(run, error, until)))
 }
 

@@ -64,9 +64,7 @@ pub fn compare(
             "the number of frames is from 1 to {MAX_FRAMES}, such as 100, not {frames}"
         )));
     }
-    let times: Vec<_> = (0..=frames)
-        .map(|k| until * k as f64 / frames as f64)
-        .collect();
+    let times: Vec<_> = (0..=frames).map(|k| until * k as f64 / frames as f64).collect();
     monitor.expect(runs.len() as f64);
     let compared = runs.iter().map(|&(method, control)| {
         monitor.stage(method.name);
@@ -77,11 +75,7 @@ pub fn compare(
     });
     let runs = compared.collect::<Result<Vec<_>, Failure>>();
     monitor.clear();
-    Ok(Comparison {
-        times,
-        runs: runs?,
-        particles: scene.model.particles(),
-    })
+    Ok(Comparison { times, runs: runs?, particles: scene.model.particles() })
 }
 
 /// Runs a scene by a method, and records the states at these times (s).
@@ -110,14 +104,7 @@ fn follow(
         states.push(run.state().to_vec());
         energies.extend(run.energy().map(|energy| energy.total()));
     }
-    Ok(ComparedRun {
-        method,
-        control,
-        states,
-        energies,
-        work: run.work().total(),
-        blow_up,
-    })
+    Ok(ComparedRun { method, control, states, energies, work: run.work().total(), blow_up })
 }
 
 impl Comparison {

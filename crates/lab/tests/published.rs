@@ -48,11 +48,8 @@ fn distance(scene: &Scene, chart: &Chart, record: &Record, end: &[f64]) -> f64 {
 fn charts_are_true_and_cheap() {
     for (what, problem) in all() {
         let (end, calls) = (problem.end.clone(), problem.calls.clone());
-        let options = ChartOptions {
-            until: Some(problem.until),
-            at_end: true,
-            ..ChartOptions::default()
-        };
+        let options =
+            ChartOptions { until: Some(problem.until), at_end: true, ..ChartOptions::default() };
         let scene = problem.scene();
         let chart = chart(&scene, &[], &options, &()).unwrap();
         let count = calls.load(Ordering::Relaxed);
@@ -114,10 +111,7 @@ fn choices_are_cheap_at_any_stiffness() {
         let options = ChooseOptions::new(Goal::Error(1e-4));
         let choice = choose(&scene, &[], &options, &()).unwrap();
         let (best, count) = (choice.best(), calls.load(Ordering::Relaxed));
-        println!(
-            "{k:e}: {} {}, {count} calls",
-            best.method.name, best.control
-        );
+        println!("{k:e}: {} {}, {count} calls", best.method.name, best.control);
         assert!(count < 50_000, "{k:e}: {count}");
     }
 }

@@ -61,9 +61,7 @@ impl Painter {
         let (gpu, caption) = (&self.gpu, &mut self.caption);
         self.offscreen
             .render_tiles(gpu, &mut self.renderer, &[picture], |encoder, view| {
-                caption
-                    .as_mut()
-                    .map_or(vec![], |caption| caption(show, gpu, encoder, view))
+                caption.as_mut().map_or(vec![], |caption| caption(show, gpu, encoder, view))
             })
             .map_err(Failure::run)
     }

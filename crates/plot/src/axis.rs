@@ -24,12 +24,7 @@ pub struct Tick {
 impl Axis {
     /// Creates a linear axis between two numbers.
     pub(crate) fn linear(ends: [f64; 2]) -> Self {
-        Self {
-            log: false,
-            short: false,
-            ends,
-            places: [0.0, 1.0],
-        }
+        Self { log: false, short: false, ends, places: [0.0, 1.0] }
     }
 
     /// Creates a linear axis around all finite values, with a margin. A nearly constant value is in
@@ -42,9 +37,7 @@ impl Axis {
         if low > high {
             return Self::linear([0.0, 1.0]);
         }
-        let gap = (0.08 * (high - low))
-            .max(0.02 * high.abs().max(low.abs()))
-            .max(1e-9);
+        let gap = (0.08 * (high - low)).max(0.02 * high.abs().max(low.abs())).max(1e-9);
         Self::linear([low - gap, high + gap])
     }
 
@@ -58,20 +51,12 @@ impl Axis {
         let above = |m: &f64| *m >= high - high.floor();
         let down = low.floor() + marks.into_iter().rfind(below).unwrap_or(0.0);
         let up = high.floor() + marks.into_iter().find(above).unwrap_or(1.0);
-        Self {
-            log: true,
-            short: false,
-            ends: [down, up],
-            places: [0.0, 1.0],
-        }
+        Self { log: true, short: false, ends: [down, up], places: [0.0, 1.0] }
     }
 
     /// Places the ends of the axis at these coordinates of the sheet.
     pub(crate) fn between(self, from: f64, to: f64) -> Self {
-        Self {
-            places: [from, to],
-            ..self
-        }
+        Self { places: [from, to], ..self }
     }
 
     /// Returns the coordinate of a number; a number beyond the ends gets that of the nearer end.
@@ -93,18 +78,12 @@ impl Axis {
     pub(crate) fn ticks(&self, gap: f64) -> Vec<Tick> {
         let span = self.ends[1] - self.ends[0];
         let unit = (self.places[1] - self.places[0]).abs() / span;
-        if self.log {
-            self.decades(unit, gap)
-        } else {
-            self.steps((gap / unit).max(span / 12.0))
-        }
+        if self.log { self.decades(unit, gap) } else { self.steps((gap / unit).max(span / 12.0)) }
     }
 
     fn decades(&self, unit: f64, gap: f64) -> Vec<Tick> {
-        let stride = [1.0, 2.0, 3.0, 5.0, 10.0]
-            .into_iter()
-            .find(|s| s * unit >= gap)
-            .unwrap_or(20.0);
+        let stride =
+            [1.0, 2.0, 3.0, 5.0, 10.0].into_iter().find(|s| s * unit >= gap).unwrap_or(20.0);
         // 2 and 5 are labelled too if there would be hardly any labels otherwise.
         let rich = self.ends[1] - self.ends[0] < 2.5 && 0.3 * unit > 1.3 * gap;
         let mut ticks = vec![];
@@ -123,10 +102,7 @@ impl Axis {
                     2 | 5 if rich => format!("{digit}×{}", power_of_ten(power)),
                     _ => String::new(),
                 };
-                ticks.push(Tick {
-                    value: 10_f64.powf(place),
-                    label,
-                });
+                ticks.push(Tick { value: 10_f64.powf(place), label });
             }
             power += 1.0;
         }
@@ -147,10 +123,7 @@ impl Axis {
         };
         let [first, last] = [(self.ends[0] / step).ceil(), (self.ends[1] / step).floor()];
         let values = (first as i64..=last as i64).map(|k| k as f64 * step);
-        let tick = |value: f64| Tick {
-            value,
-            label: label(value).replace('-', "−"),
-        };
+        let tick = |value: f64| Tick { value, label: label(value).replace('-', "−") };
         values.map(tick).collect()
     }
 }
@@ -166,36 +139,21 @@ mod tests {
     #[test]
     fn ticks_are_round_and_apart() {
         let linear = Axis::linear([-3.3, 1.2]).between(0.0, 300.0);
-        let labels: Vec<_> = linear
-            .ticks(40.0)
-            .into_iter()
-            .map(|tick| tick.label)
-            .collect();
+        let labels: Vec<_> = linear.ticks(40.0).into_iter().map(|tick| tick.label).collect();
         assert_eq!(labels, ["−3", "−2", "−1", "0", "1"]);
         let log = Axis::log(3e-4, 0.7).between(0.0, 400.0);
         let ticks = log.ticks(40.0);
-        let labels: Vec<_> = ticks
-            .iter()
-            .filter(|tick| !tick.label.is_empty())
-            .map(|tick| &*tick.label)
-            .collect();
+        let labels: Vec<_> =
+            ticks.iter().filter(|tick| !tick.label.is_empty()).map(|tick| &*tick.label).collect();
         assert_eq!(labels, ["10^{−3}", "10^{−2}", "10^{−1}", "10^{0}"]);
         assert!(ticks.len() > 25, "no minor ticks");
         assert!((log.at(1e-2) - f64::midpoint(log.at(1e-3), log.at(1e-1))).abs() < 1e-9);
         // The range of double precision.
         let all = Axis::log(0.0, f64::MAX).between(0.0, 200.0);
-        assert!(
-            all.ticks(40.0)
-                .iter()
-                .all(|tick| all.at(tick.value).is_finite())
-        );
+        assert!(all.ticks(40.0).iter().all(|tick| all.at(tick.value).is_finite()));
         // Many decades on a short axis have fewer labels.
         let long = Axis::log(1e-12, 1.0).between(0.0, 200.0);
-        let labels = long
-            .ticks(40.0)
-            .into_iter()
-            .filter(|tick| !tick.label.is_empty())
-            .count();
+        let labels = long.ticks(40.0).into_iter().filter(|tick| !tick.label.is_empty()).count();
         assert!((3..=5).contains(&labels), "{labels}");
     }
 }

@@ -33,10 +33,7 @@ pub fn outlines(inside: impl Fn(Point) -> bool, window: Rect, columns: usize) ->
             let leaves = |k: usize| is_in[k] && !is_in[(k + 1) % 4];
             let enters = |k: usize| !is_in[k] && is_in[(k + 1) % 4];
             let edge = |k: usize| {
-                (
-                    corners[k].min(corners[(k + 1) % 4]),
-                    corners[k].max(corners[(k + 1) % 4]),
-                )
+                (corners[k].min(corners[(k + 1) % 4]), corners[k].max(corners[(k + 1) % 4]))
             };
             for k in (0..4).filter(|k| leaves(*k)) {
                 if let Some(m) = (1..4).map(|back| (k + 4 - back) % 4).find(|m| enters(*m)) {
@@ -52,10 +49,7 @@ pub fn outlines(inside: impl Fn(Point) -> bool, window: Rect, columns: usize) ->
             (there, not) = (not, there);
         }
         for _ in 0..12 {
-            let middle = [
-                f64::midpoint(there[0], not[0]),
-                f64::midpoint(there[1], not[1]),
-            ];
+            let middle = [f64::midpoint(there[0], not[0]), f64::midpoint(there[1], not[1])];
             *(if inside(middle) { &mut there } else { &mut not }) = middle;
         }
         there
@@ -81,11 +75,7 @@ mod tests {
 
     fn area(outline: &[Point]) -> f64 {
         let next = outline.iter().cycle().skip(1);
-        let twice: f64 = outline
-            .iter()
-            .zip(next)
-            .map(|(a, b)| a[0] * b[1] - b[0] * a[1])
-            .sum();
+        let twice: f64 = outline.iter().zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum();
         twice / 2.0
     }
 

@@ -27,10 +27,7 @@ impl fmt::Display for Error {
             Self::Sheet([w, h]) => {
                 write!(f, "{w} x {h}: a chart is 1 to 20000 units wide and high")
             }
-            Self::TooSmall {
-                sheet: [w, h],
-                enough,
-            } => {
+            Self::TooSmall { sheet: [w, h], enough } => {
                 write!(f, "{w} x {h}: too small for this chart; ")?;
                 match enough {
                     Some([w, h]) => write!(f, "{w} x {h} would do"),

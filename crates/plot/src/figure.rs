@@ -29,14 +29,7 @@ pub struct Figure {
 impl Figure {
     /// Creates an empty sheet of this width and height.
     pub(crate) fn new(size: Point) -> Self {
-        Self {
-            size,
-            shapes: vec![],
-            parts: vec![],
-            panels: vec![],
-            runs: vec![],
-            labels: vec![],
-        }
+        Self { size, shapes: vec![], parts: vec![], panels: vec![], runs: vec![], labels: vec![] }
     }
 
     /// Returns the whole sheet.
@@ -167,18 +160,11 @@ mod tests {
     fn texts_are_measured_as_they_are_drawn() {
         let mut figure = Figure::new([400.0, 100.0]);
         let room = figure.text([20.0, 60.0], Label::new("Wäg & <λ> 10^{−3}", 40.0));
-        let picture = image::load_from_memory(&figure.png(1.0).unwrap())
-            .unwrap()
-            .to_luma8();
+        let picture = image::load_from_memory(&figure.png(1.0).unwrap()).unwrap().to_luma8();
         let dark = picture.enumerate_pixels().filter(|(_, _, p)| p.0[0] < 128);
         let ink = dark.fold(Rect::new(400.0, 100.0, 0.0, 0.0), |r, (x, y, _)| {
             let (x, y) = (f64::from(x), f64::from(y));
-            Rect::new(
-                r.x0.min(x),
-                r.y0.min(y),
-                r.x1.max(x + 1.0),
-                r.y1.max(y + 1.0),
-            )
+            Rect::new(r.x0.min(x), r.y0.min(y), r.x1.max(x + 1.0), r.y1.max(y + 1.0))
         });
         assert!(room.holds(ink), "{ink:?} in {room:?}");
         assert!(ink.width() > 0.93 * room.width(), "{ink:?} in {room:?}");

@@ -50,10 +50,7 @@ impl Rect {
     }
 
     pub(crate) fn centre(self) -> Point {
-        [
-            f64::midpoint(self.x0, self.x1),
-            f64::midpoint(self.y0, self.y1),
-        ]
+        [f64::midpoint(self.x0, self.x1), f64::midpoint(self.y0, self.y1)]
     }
 
     /// Returns whether the rectangles overlap in an area.
@@ -68,21 +65,14 @@ impl Rect {
 
     /// Returns the corners, in order around the rectangle.
     pub(crate) fn corners(self) -> [Point; 4] {
-        [
-            [self.x0, self.y0],
-            [self.x1, self.y0],
-            [self.x1, self.y1],
-            [self.x0, self.y1],
-        ]
+        [[self.x0, self.y0], [self.x1, self.y0], [self.x1, self.y1], [self.x0, self.y1]]
     }
 
     /// Returns whether the line from a to b meets the rectangle (Liang and Barsky, 1984).
     pub(crate) fn meets(self, a: Point, b: Point) -> bool {
         let (mut from, mut to) = (0.0_f64, 1.0_f64);
-        for (start, end, lo, hi) in [
-            (a[0], b[0], self.x0, self.x1),
-            (a[1], b[1], self.y0, self.y1),
-        ] {
+        for (start, end, lo, hi) in [(a[0], b[0], self.x0, self.x1), (a[1], b[1], self.y0, self.y1)]
+        {
             let d = end - start;
             if d == 0.0 {
                 if start < lo || start > hi {

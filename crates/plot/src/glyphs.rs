@@ -75,11 +75,7 @@ fn letters(font: &FontRef, data: &ShaperData, label: Label) -> (Vec<Letter>, f64
         let shaped = shaper.shape(text, ShapeOptions::new());
         for (info, place) in shaped.glyph_infos().iter().zip(shaped.glyph_positions()) {
             let [dx, dy] = [place.x_offset, place.y_offset].map(|d| f64::from(d) * unit);
-            letters.push(Letter {
-                glyph: info.glyph_id.into(),
-                at: [x + dx, -rise - dy],
-                unit,
-            });
+            letters.push(Letter { glyph: info.glyph_id.into(), at: [x + dx, -rise - dy], unit });
             x += f64::from(place.x_advance) * unit;
         }
     }
@@ -106,11 +102,7 @@ impl Pen<'_> {
             self.start[0] + f64::from(x) * self.unit[0],
             self.start[1] - f64::from(y) * self.unit[1],
         ];
-        let [dx, dy] = if self.turned {
-            [across, -along]
-        } else {
-            [along, across]
-        };
+        let [dx, dy] = if self.turned { [across, -along] } else { [along, across] };
         ((self.at[0] + dx) as f32, (self.at[1] + dy) as f32)
     }
 }

@@ -65,11 +65,7 @@ impl Look {
     /// Returns the paint of the letters. The font has no bold face; its outlines are drawn instead.
     pub(crate) fn paint(&self) -> Paint {
         let plain = Paint::fill(self.colour);
-        if self.bold {
-            plain.outlined(Pen::new(self.colour, self.weight()))
-        } else {
-            plain
-        }
+        if self.bold { plain.outlined(Pen::new(self.colour, self.weight())) } else { plain }
     }
 }
 
@@ -82,13 +78,7 @@ pub struct Label<'a> {
 
 impl<'a> Label<'a> {
     pub fn new(text: &'a str, size: f64) -> Self {
-        let look = Look {
-            size,
-            colour: INK,
-            anchor: Anchor::Start,
-            bold: false,
-            turned: false,
-        };
+        let look = Look { size, colour: INK, anchor: Anchor::Start, bold: false, turned: false };
         Self { text, look }
     }
 
@@ -137,11 +127,8 @@ impl<'a> Label<'a> {
 /// Returns the pieces of a text in order, and whether each is a superscript.
 pub fn pieces(text: &str) -> impl Iterator<Item = (&str, bool)> {
     text.split("^{").enumerate().flat_map(|(k, part)| {
-        let (raised, flat) = if k == 0 {
-            ("", part)
-        } else {
-            part.split_once('}').unwrap_or(("", part))
-        };
+        let (raised, flat) =
+            if k == 0 { ("", part) } else { part.split_once('}').unwrap_or(("", part)) };
         [(raised, true), (flat, false)]
     })
 }
@@ -160,21 +147,12 @@ pub fn width(text: &str, size: f64) -> f64 {
     let Some(font) = &*LETTERS else {
         return 0.6 * size * text.chars().count() as f64;
     };
-    let (letters, metrics) = (
-        font.charmap(),
-        font.glyph_metrics(Size::new(size as f32), LocationRef::default()),
-    );
-    let advance = |c| {
-        letters
-            .map(c)
-            .and_then(|glyph| metrics.advance_width(glyph))
-    };
+    let (letters, metrics) =
+        (font.charmap(), font.glyph_metrics(Size::new(size as f32), LocationRef::default()));
+    let advance = |c| letters.map(c).and_then(|glyph| metrics.advance_width(glyph));
     pieces(text)
         .map(|(piece, raised)| {
-            let sum: f64 = piece
-                .chars()
-                .map(|c| advance(c).map_or(0.6 * size, f64::from))
-                .sum();
+            let sum: f64 = piece.chars().map(|c| advance(c).map_or(0.6 * size, f64::from)).sum();
             sum * if raised { RAISED } else { 1.0 }
         })
         .sum()

@@ -33,13 +33,9 @@ pub fn fit(size: Point, draw: impl Fn(Figure, Level) -> Option<Figure>) -> Resul
         return Err(Error::Sheet(size));
     }
     at(size).ok_or_else(|| {
-        let mut larger = (1..40)
-            .map(|k| 1.1_f64.powi(k))
-            .map(|by| size.map(|length| (by * length).ceil()));
-        Error::TooSmall {
-            sheet: size,
-            enough: larger.find(|size| at(*size).is_some()),
-        }
+        let mut larger =
+            (1..40).map(|k| 1.1_f64.powi(k)).map(|by| size.map(|length| (by * length).ceil()));
+        Error::TooSmall { sheet: size, enough: larger.find(|size| at(*size).is_some()) }
     })
 }
 
@@ -49,19 +45,9 @@ pub fn largest(
     base: f64,
     draw: impl Fn(Figure, Level) -> Option<Figure>,
 ) -> Option<Figure> {
-    let levels = [
-        (1.0, true),
-        (0.9, true),
-        (0.8, true),
-        (0.7, true),
-        (0.7, false),
-        (0.6, false),
-    ];
+    let levels = [(1.0, true), (0.9, true), (0.8, true), (0.7, true), (0.7, false), (0.6, false)];
     levels.into_iter().find_map(|(part, full)| {
-        let level = Level {
-            size: (part * base).max(MIN_TEXT_SIZE),
-            full,
-        };
+        let level = Level { size: (part * base).max(MIN_TEXT_SIZE), full };
         draw(Figure::new(size), level).filter(Figure::is_sound)
     })
 }
@@ -106,19 +92,12 @@ pub fn headings(figure: &mut Figure, [title, subtitle, foot]: [&str; 3], level: 
     let margin = level.size;
     let (x1, y1) = (sheet.x1 - margin, sheet.y1 - 0.6 * margin);
     let mut left = Rect::new(margin, 0.8 * margin, x1, y1);
-    let parts = [
-        (title, 1.45, true),
-        (if level.full { subtitle } else { "" }, 1.0, false),
-    ];
+    let parts = [(title, 1.45, true), (if level.full { subtitle } else { "" }, 1.0, false)];
     for (text, factor, bold) in parts {
         let size = factor * level.size;
         for line in wrap(text, size, left.width()) {
             let label = Label::new(&line, size);
-            let label = if bold {
-                label.bold()
-            } else {
-                label.colour(GREY)
-            };
+            let label = if bold { label.bold() } else { label.colour(GREY) };
             figure.text([left.x0, left.y0 + 0.8 * size], label);
             left.y0 += 1.25 * size;
         }
@@ -164,10 +143,7 @@ pub fn legend(figure: &mut Figure, area: &mut Rect, entries: &[(String, Sign)], 
 pub fn grid(n: usize, area: Rect, gap: f64, merit: impl Fn(Point) -> f64) -> (Vec<Rect>, usize) {
     let cell = |columns: usize| {
         let share = |length: f64, parts: usize| (length + gap) / parts as f64 - gap;
-        [
-            share(area.width(), columns),
-            share(area.height(), n.div_ceil(columns)),
-        ]
+        [share(area.width(), columns), share(area.height(), n.div_ceil(columns))]
     };
     let better = |a: &usize, b: &usize| merit(cell(*a)).total_cmp(&merit(cell(*b)));
     let columns = (1..=n).rev().max_by(better).unwrap_or(1);
@@ -196,10 +172,7 @@ pub fn axes(figure: &mut Figure, area: Rect, [x, y]: [&Axis; 2], size: f64, numb
         let (colour, width) = styles[usize::from(label.is_empty())];
         Pen::new(colour, width * size)
     };
-    let (xs, ys) = (
-        x.ticks(if x.log { 3.4 } else { 2.3 } * size),
-        y.ticks(1.6 * size),
-    );
+    let (xs, ys) = (x.ticks(if x.log { 3.4 } else { 2.3 } * size), y.ticks(1.6 * size));
     // Labelled ticks are drawn over minor ones.
     for named in [false, true] {
         for tick in xs.iter().filter(|tick| tick.label.is_empty() != named) {

@@ -103,9 +103,7 @@ impl LineChart {
         if lines.flat_map(Line::points).next().is_none() {
             return Err(Error::Empty("no value to draw"));
         }
-        layout::fit([width, height], |figure, level| {
-            self.try_draw(figure, level)
-        })
+        layout::fit([width, height], |figure, level| self.try_draw(figure, level))
     }
 
     /// Draws the panels, as many as fit from above, on a sheet of this width and height for a
@@ -165,19 +163,13 @@ impl LineChart {
         let mut top = left.y0;
         for (k, panel) in self.panels.iter().enumerate() {
             let room = Rect::new(left.x0, top, left.x1 - size, top + height - size);
-            let area = Rect {
-                x0: room.x0 + inset,
-                ..room
-            };
+            let area = Rect { x0: room.x0 + inset, ..room };
             top += height;
             layout::label_left(&mut figure, room, &panel.y_label, "", size);
             panel.draw(&mut figure, area, size, below(k), false);
             if below(k) {
                 top += under;
-                let place = Rect {
-                    y1: top - 0.4 * size,
-                    ..area
-                };
+                let place = Rect { y1: top - 0.4 * size, ..area };
                 layout::label_below(&mut figure, place, &panel.x_label, "", size);
             }
         }

@@ -18,12 +18,7 @@ pub struct Pen {
 impl Pen {
     /// Creates a pen for solid lines.
     pub(crate) fn new(colour: &'static str, width: f64) -> Self {
-        Self {
-            colour,
-            width,
-            dash: vec![],
-            round: false,
-        }
+        Self { colour, width, dash: vec![], round: false }
     }
 
     /// Gives the pen dashes.
@@ -33,10 +28,7 @@ impl Pen {
 
     /// Gives the pen round ends.
     pub(crate) fn round(self) -> Self {
-        Self {
-            round: true,
-            ..self
-        }
+        Self { round: true, ..self }
     }
 }
 
@@ -70,11 +62,7 @@ pub struct Paint {
 impl Paint {
     /// Creates a paint that fills a shape.
     pub(crate) fn fill(colour: &'static str) -> Self {
-        Self {
-            fill: Some(colour),
-            opacity: 1.0,
-            pen: None,
-        }
+        Self { fill: Some(colour), opacity: 1.0, pen: None }
     }
 
     /// Gives the paint another opacity.
@@ -84,20 +72,13 @@ impl Paint {
 
     /// Gives the paint a pen for the outline.
     pub(crate) fn outlined(self, pen: Pen) -> Self {
-        Self {
-            pen: Some(pen),
-            ..self
-        }
+        Self { pen: Some(pen), ..self }
     }
 }
 
 impl From<Pen> for Paint {
     fn from(pen: Pen) -> Self {
-        Self {
-            fill: None,
-            opacity: 1.0,
-            pen: Some(pen),
-        }
+        Self { fill: None, opacity: 1.0, pen: Some(pen) }
     }
 }
 

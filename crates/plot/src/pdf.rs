@@ -20,10 +20,7 @@ const LEVEL: u8 = 6;
 /// the same without the font.
 pub fn file([w, h]: Point, shapes: &[Shape]) -> Vec<u8> {
     let [w, h] = [w, h].map(|length| length as f32 * POINT);
-    let mut canvas = Canvas {
-        content: Content::new(),
-        opacities: vec![],
-    };
+    let mut canvas = Canvas { content: Content::new(), opacities: vec![] };
     // The y axis of a page points up.
     let turn = [POINT, 0.0, 0.0, -POINT, 0.0, h];
     canvas.content.save_state().transform(turn);
@@ -171,8 +168,7 @@ impl Canvas {
                 PathSegment::CubicTo(a, b, p) => {
                     let (a, b) = (place(a), place(b));
                     last = place(p);
-                    self.content
-                        .cubic_to(a[0], a[1], b[0], b[1], last[0], last[1]);
+                    self.content.cubic_to(a[0], a[1], b[0], b[1], last[0], last[1]);
                 }
                 PathSegment::Close => {
                     self.content.close_path();
@@ -184,11 +180,7 @@ impl Canvas {
     /// Draws along the path traced last.
     fn stroke(&mut self, pen: &Pen) {
         let [r, g, b] = rgb(pen.colour).map(|part| f32::from(part) / 255.0);
-        let cap = if pen.round {
-            LineCapStyle::RoundCap
-        } else {
-            LineCapStyle::ButtCap
-        };
+        let cap = if pen.round { LineCapStyle::RoundCap } else { LineCapStyle::ButtCap };
         self.content
             .set_stroke_rgb(r, g, b)
             .set_line_width(pen.width as f32)
@@ -224,11 +216,7 @@ mod tests {
         assert!(text.contains("/ca 0.5"), "{text}");
         let find = |part: &[u8]| file.windows(part.len()).position(|window| window == part);
         let table = find(b"xref\n").unwrap();
-        for (k, line) in String::from_utf8_lossy(&file[table..])
-            .lines()
-            .skip(3)
-            .take(4)
-            .enumerate()
+        for (k, line) in String::from_utf8_lossy(&file[table..]).lines().skip(3).take(4).enumerate()
         {
             let begin: usize = line[..10].parse().unwrap();
             assert!(file[begin..].starts_with(format!("{} 0 obj", k + 1).as_bytes()));
@@ -237,18 +225,11 @@ mod tests {
         let end = find(b"\nendstream").unwrap();
         let content = miniz_oxide::inflate::decompress_to_vec_zlib(&file[begin..end]).unwrap();
         let content = String::from_utf8(content).unwrap();
-        let count = |operator: &str| {
-            content
-                .lines()
-                .filter(|line| line.ends_with(operator))
-                .count()
-        };
+        let count =
+            |operator: &str| content.lines().filter(|line| line.ends_with(operator)).count();
         // Areas, the letter, the line and the window; all saved states are restored.
         assert_eq!(["f*", "f", "S", "W"].map(count), [2, 1, 1, 1], "{content}");
-        assert_eq!(
-            count("q"),
-            content.lines().filter(|line| *line == "Q").count()
-        );
+        assert_eq!(count("q"), content.lines().filter(|line| *line == "Q").count());
         assert!(content.contains("/G0 gs") && content.contains("1 0 0 rg") && count(" c") > 8);
     }
 }

@@ -22,20 +22,16 @@ pub fn file(size: Point, shapes: &[Shape], scale: f64) -> Result<Vec<u8>, Error>
     let mut pixels = Pixmap::new(w, h)
         .ok_or_else(|| Error::Pixels(format!("no picture can be {w} x {h} pixels")))?;
     pixels.fill(Color::WHITE);
-    let mut canvas = Canvas {
-        pixels,
-        zoom: Transform::from_scale(scale as f32, scale as f32),
-        mask: None,
-    };
+    let mut canvas =
+        Canvas { pixels, zoom: Transform::from_scale(scale as f32, scale as f32), mask: None };
     canvas.draw(shapes);
     encode(&canvas.pixels).map_err(|why| Error::Pixels(why.to_string()))
 }
 
 /// Encodes pixels as a PNG file without opacity: the sheet is opaque.
 fn encode(pixels: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
-    let colours: Vec<u8> = (pixels.data().chunks_exact(4))
-        .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
-        .collect();
+    let colours: Vec<u8> =
+        (pixels.data().chunks_exact(4)).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
     let mut file = vec![];
     let mut encoder = png::Encoder::new(&mut file, pixels.width(), pixels.height());
     encoder.set_color(png::ColorType::Rgb);
@@ -113,11 +109,7 @@ impl Canvas {
         let stroke = Stroke {
             width: pen.width as f32,
             line_join: LineJoin::Round,
-            line_cap: if pen.round {
-                LineCap::Round
-            } else {
-                LineCap::Butt
-            },
+            line_cap: if pen.round { LineCap::Round } else { LineCap::Butt },
             dash: StrokeDash::new(dashes(&pen.dash), 0.0),
             ..Stroke::default()
         };

@@ -51,11 +51,7 @@ impl CurveStyle {
     /// Creates a style.
     #[must_use]
     pub const fn new(colour: &'static str, dash: &'static [f64], marker: Marker) -> Self {
-        Self {
-            colour,
-            dash,
-            marker,
-        }
+        Self { colour, dash, marker }
     }
 
     /// Returns the pen of a line in this style.
@@ -104,9 +100,7 @@ impl CurveStyle {
                     4 => 1.15,
                     _ => 1.0,
                 };
-                (0..n)
-                    .map(|k| at(turn + f64::from(k) / f64::from(n), r))
-                    .collect()
+                (0..n).map(|k| at(turn + f64::from(k) / f64::from(n), r)).collect()
             }
             Marker::Star(n, dent) => (0..2 * n)
                 .map(|k| {

@@ -28,12 +28,7 @@ fn write(file: &mut String, shapes: &[Shape], clips: &mut usize) {
         match shape {
             Shape::Line(points, pen) => path(file, &[points], "", &format!("fill=\"none\" {pen}")),
             Shape::Area(outlines, paint) => {
-                path(
-                    file,
-                    outlines,
-                    "Z",
-                    &format!("fill-rule=\"evenodd\" {paint}"),
-                );
+                path(file, outlines, "Z", &format!("fill-rule=\"evenodd\" {paint}"));
             }
             Shape::Text(at, text, look) => label(file, *at, Label { text, look: *look }),
             Shape::Clipped(window, shapes) => {
@@ -67,24 +62,13 @@ fn path(file: &mut String, lines: &[impl AsRef<[Point]>], end: &str, style: &str
 
 fn label(file: &mut String, at: Point, label: Label) {
     let [x, y] = at;
-    let Look {
-        size,
-        colour,
-        anchor,
-        bold,
-        turned,
-    } = label.look;
-    let _ = write!(
-        file,
-        "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{size:.2}\" fill=\"{colour}\""
-    );
+    let Look { size, colour, anchor, bold, turned } = label.look;
+    let _ =
+        write!(file, "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{size:.2}\" fill=\"{colour}\"");
     // The text keeps its length with any font. Some programs stretch superscripts wrongly, and
     // texts with superscripts are short.
     if let Some(length) = label.fixed_length() {
-        let _ = write!(
-            file,
-            " textLength=\"{length:.2}\" lengthAdjust=\"spacingAndGlyphs\""
-        );
+        let _ = write!(file, " textLength=\"{length:.2}\" lengthAdjust=\"spacingAndGlyphs\"");
     }
     match anchor {
         Anchor::Start => {}
@@ -117,8 +101,5 @@ fn label(file: &mut String, at: Point, label: Label) {
 /// Escapes a text for XML, without control characters, which XML forbids.
 fn escape(text: &str) -> String {
     let clean: String = text.chars().filter(|c| !c.is_control()).collect();
-    clean
-        .replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
+    clean.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -6,77 +6,24 @@ use crate::{
     Region, StabilityRegions, WorkPrecision,
 };
 
-const SIZES: [[f64; 2]; 4] = [
-    [480.0, 360.0],
-    [800.0, 600.0],
-    [1280.0, 720.0],
-    [3000.0, 2000.0],
-];
+const SIZES: [[f64; 2]; 4] = [[480.0, 360.0], [800.0, 600.0], [1280.0, 720.0], [3000.0, 2000.0]];
 
 /// Methods: letter, name, and evaluations for the errors 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8 (0:
 /// never reached), for a cloth in one second.
 const METHODS: [(char, &str, [f64; 6]); 13] = [
-    (
-        'v',
-        "velocity Verlet",
-        [541.0, 1081.0, 4201.0, 11_821.0, 0.0, 0.0],
-    ),
-    (
-        'p',
-        "PEFRL",
-        [1440.0, 1440.0, 1440.0, 2880.0, 4080.0, 15_840.0],
-    ),
-    (
-        'x',
-        "DOP853",
-        [2605.0, 2605.0, 3637.0, 5461.0, 6589.0, 11_197.0],
-    ),
-    (
-        'r',
-        "classical RK4",
-        [1680.0, 1680.0, 6000.0, 12_000.0, 17_040.0, 47_760.0],
-    ),
-    (
-        's',
-        "symplectic Euler",
-        [540.0, 2100.0, 16_740.0, 0.0, 0.0, 0.0],
-    ),
+    ('v', "velocity Verlet", [541.0, 1081.0, 4201.0, 11_821.0, 0.0, 0.0]),
+    ('p', "PEFRL", [1440.0, 1440.0, 1440.0, 2880.0, 4080.0, 15_840.0]),
+    ('x', "DOP853", [2605.0, 2605.0, 3637.0, 5461.0, 6589.0, 11_197.0]),
+    ('r', "classical RK4", [1680.0, 1680.0, 6000.0, 12_000.0, 17_040.0, 47_760.0]),
+    ('s', "symplectic Euler", [540.0, 2100.0, 16_740.0, 0.0, 0.0, 0.0]),
     ('t', "Heun", [7080.0, 7080.0, 14_040.0, 55_800.0, 0.0, 0.0]),
-    (
-        'a',
-        "Dormand-Prince 5(4)",
-        [4105.0, 4105.0, 5083.0, 7789.0, 11_905.0, 29_341.0],
-    ),
-    (
-        'e',
-        "explicit Euler",
-        [90_000.0, 200_000.0, 0.0, 0.0, 0.0, 0.0],
-    ),
-    (
-        'm',
-        "explicit midpoint",
-        [6800.0, 7000.0, 13_000.0, 50_000.0, 0.0, 0.0],
-    ),
-    (
-        'f',
-        "Fehlberg 4(5)",
-        [5000.0, 5300.0, 7000.0, 11_000.0, 18_000.0, 60_000.0],
-    ),
-    (
-        'i',
-        "implicit Euler",
-        [3000.0, 9000.0, 80_000.0, 0.0, 0.0, 0.0],
-    ),
-    (
-        'b',
-        "TR-BDF2",
-        [2500.0, 4200.0, 12_000.0, 39_000.0, 0.0, 0.0],
-    ),
-    (
-        'n',
-        "implicit midpoint",
-        [3600.0, 5200.0, 16_000.0, 48_000.0, 0.0, 0.0],
-    ),
+    ('a', "Dormand-Prince 5(4)", [4105.0, 4105.0, 5083.0, 7789.0, 11_905.0, 29_341.0]),
+    ('e', "explicit Euler", [90_000.0, 200_000.0, 0.0, 0.0, 0.0, 0.0]),
+    ('m', "explicit midpoint", [6800.0, 7000.0, 13_000.0, 50_000.0, 0.0, 0.0]),
+    ('f', "Fehlberg 4(5)", [5000.0, 5300.0, 7000.0, 11_000.0, 18_000.0, 60_000.0]),
+    ('i', "implicit Euler", [3000.0, 9000.0, 80_000.0, 0.0, 0.0, 0.0]),
+    ('b', "TR-BDF2", [2500.0, 4200.0, 12_000.0, 39_000.0, 0.0, 0.0]),
+    ('n', "implicit midpoint", [3600.0, 5200.0, 16_000.0, 48_000.0, 0.0, 0.0]),
 ];
 
 /// Returns a style that differs between methods.
@@ -89,11 +36,7 @@ fn style(letter: char) -> CurveStyle {
         Marker::Star(4 + k as u8 % 3, 0.4),
         Marker::Cross(0.125),
     ];
-    CurveStyle {
-        colour: colours[k % 4],
-        dash: dashes[k % 3],
-        marker: markers[k / 4 % 3],
-    }
+    CurveStyle { colour: colours[k % 4], dash: dashes[k % 3], marker: markers[k / 4 % 3] }
 }
 
 fn curves(n: usize, slower: f64) -> Vec<Curve> {
@@ -107,10 +50,7 @@ fn curves(n: usize, slower: f64) -> Vec<Curve> {
         spread: Some([0.8 * error, 1.3 * error]),
     };
     let curve = |&(letter, name, works): &(char, &str, [f64; 6])| {
-        let reached = errors
-            .into_iter()
-            .zip(works)
-            .filter(|(_, work)| *work > 0.0);
+        let reached = errors.into_iter().zip(works).filter(|(_, work)| *work > 0.0);
         let mut wobble = 1.0;
         let mut runs: Vec<_> = reached
             .map(|(error, work)| {
@@ -120,11 +60,7 @@ fn curves(n: usize, slower: f64) -> Vec<Curve> {
             .collect();
         let lost = works[0] * slower * 0.6;
         runs.extend([lost, lost / 2.0].map(|work| run(f64::NAN, work, true)));
-        Curve {
-            style: style(letter),
-            name: name.to_owned(),
-            runs,
-        }
+        Curve { style: style(letter), name: name.to_owned(), runs }
     };
     METHODS[..n].iter().map(curve).collect()
 }
@@ -162,10 +98,7 @@ fn taylor(order: i32, x: f64, y: f64) -> f64 {
     let (mut sum, mut term) = ([1.0, 0.0], [1.0, 0.0]);
     for k in 1..=order {
         let k = f64::from(k);
-        term = [
-            (term[0] * x - term[1] * y) / k,
-            (term[0] * y + term[1] * x) / k,
-        ];
+        term = [(term[0] * x - term[1] * y) / k, (term[0] * y + term[1] * x) / k];
         sum = [sum[0] + term[0], sum[1] + term[1]];
     }
     sum[0].hypot(sum[1])
@@ -219,17 +152,11 @@ fn region_chart(n: usize) -> StabilityRegions {
 fn check(name: &str, chart: &dyn Fn(f64, f64) -> Result<Figure, Error>) {
     for [w, h] in SIZES {
         let figure = chart(w, h).unwrap();
-        assert!(
-            figure.is_sound(),
-            "{name} at {w} x {h}: texts overlap, or leave the sheet"
-        );
+        assert!(figure.is_sound(), "{name} at {w} x {h}: texts overlap, or leave the sheet");
         let svg = figure.svg();
         let tree = roxmltree::Document::parse(&svg).unwrap();
         assert!(tree.descendants().any(|node| node.has_tag_name("text")));
-        assert!(
-            !svg.contains("NaN") && !svg.contains("inf"),
-            "{name} at {w} x {h}"
-        );
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name} at {w} x {h}");
         if let Some(folder) = std::env::var_os("A3_KEEP_CHARTS") {
             let path = std::path::Path::new(&folder).join(format!("{name}-{w}x{h}"));
             std::fs::write(path.with_extension("svg"), &svg).unwrap();
@@ -244,9 +171,7 @@ fn no_text_of_a_precision_chart_covers_another() {
     for methods in [1, 4, 13] {
         for panels in [1, 2, 6] {
             let chart = precision_chart(methods, panels);
-            check(&format!("precision-{methods}-{panels}"), &|w, h| {
-                chart.draw(w, h)
-            });
+            check(&format!("precision-{methods}-{panels}"), &|w, h| chart.draw(w, h));
         }
     }
 }
@@ -255,12 +180,7 @@ fn no_text_of_a_precision_chart_covers_another() {
 fn long_names_are_cut_and_change_nothing_else() {
     let long = "name".repeat(60);
     let mut chart = precision_chart(13, 2);
-    for text in [
-        &mut chart.title,
-        &mut chart.subtitle,
-        &mut chart.x_label,
-        &mut chart.y_label,
-    ] {
+    for text in [&mut chart.title, &mut chart.subtitle, &mut chart.x_label, &mut chart.y_label] {
         text.clone_from(&long);
     }
     for problem in &mut chart.problems {
@@ -300,15 +220,7 @@ fn eigenvalues_outside_the_region_are_crosses_or_rings() {
         // Two lines each, plus those of the legend.
         figure.svg().matches("#d0021b").count() / 2 - 1
     };
-    let z = || {
-        vec![
-            [-1.0, 0.9],
-            [-1.0, 1.1],
-            [0.1, 0.0],
-            [f64::NAN, 0.0],
-            [2.5, 0.0],
-        ]
-    };
+    let z = || vec![[-1.0, 0.9], [-1.0, 1.1], [0.1, 0.0], [f64::NAN, 0.0], [2.5, 0.0]];
     assert_eq!(crosses(|x, y| taylor(1, x, y), z()), 3);
     assert_eq!(crosses(|x, y| 1.0 / (1.0 - x).hypot(y), z()), 1);
     assert_eq!(crosses(|_, _| f64::NAN, z()), 4);
@@ -362,25 +274,12 @@ fn no_text_of_a_line_chart_covers_another() {
 
 #[test]
 fn a_sheet_too_small_is_refused_with_one_that_is_not() {
-    let why = precision_chart(13, 6)
-        .draw(200.0, 100.0)
-        .unwrap_err()
-        .to_string();
-    let enough = why
-        .split("; ")
-        .nth(1)
-        .unwrap()
-        .split(' ')
-        .filter_map(|word| word.parse().ok());
+    let why = precision_chart(13, 6).draw(200.0, 100.0).unwrap_err().to_string();
+    let enough = why.split("; ").nth(1).unwrap().split(' ').filter_map(|word| word.parse().ok());
     let [w, h] = enough.collect::<Vec<f64>>().try_into().unwrap();
     assert!(precision_chart(13, 6).draw(w, h).is_ok(), "{why}");
     assert!(precision_chart(1, 1).draw(f64::NAN, 100.0).is_err());
     assert!(
-        WorkPrecision {
-            problems: vec![],
-            ..precision_chart(1, 1)
-        }
-        .draw(800.0, 600.0)
-        .is_err()
+        WorkPrecision { problems: vec![], ..precision_chart(1, 1) }.draw(800.0, 600.0).is_err()
     );
 }

@@ -99,9 +99,7 @@ impl Chart {
     fn winners(&self) -> Vec<(f64, usize)> {
         let place = |best| self.0.runs().position(|run| std::ptr::eq(run, best));
         let winners = self.0.winners();
-        winners
-            .filter_map(|(error, best)| Some((error, place(best)?)))
-            .collect()
+        winners.filter_map(|(error, best)| Some((error, place(best)?))).collect()
     }
 
     /// Returns the names of the methods whose runs take too many evaluations.
@@ -118,9 +116,7 @@ impl Chart {
 
     /// Draws a picture of a kind and a size (px).
     fn drawn<'py>(&self, py: Python<'py>, kind: &str, size: (u32, u32)) -> Drawn<'py> {
-        drawn(py, kind, size, &|width, height| {
-            self.0.figure(width, height)
-        })
+        drawn(py, kind, size, &|width, height| self.0.figure(width, height))
     }
 }
 
@@ -152,23 +148,13 @@ pub fn chart(
         stiffness,
     };
     let raised = opened.raised(methods.iter().copied());
-    work(py, monitor, &raised, || {
-        a3_lab::chart::chart(&scene, &methods, &options, monitor)
-    })
-    .map(Chart)
+    work(py, monitor, &raised, || a3_lab::chart::chart(&scene, &methods, &options, monitor))
+        .map(Chart)
 }
 
 /// Method, step or tolerance, error, work, computing time of a frame (ms), the reason why the
 /// setting is not larger, and a command.
-type Chosen = (
-    &'static str,
-    f64,
-    f64,
-    f64,
-    f64,
-    &'static str,
-    Option<String>,
-);
+type Chosen = (&'static str, f64, f64, f64, f64, &'static str, Option<String>);
 
 /// Chooses methods. Returns them, the name of the error, the end of the runs (s), and the
 /// uncertainty of the reference.
@@ -206,9 +192,8 @@ pub fn choose(
         ..ChooseOptions::new(goal)
     };
     let raised = opened.raised(methods.iter().copied());
-    let choice = work(py, monitor, &raised, || {
-        a3_lab::choose::choose(&scene, &methods, &options, monitor)
-    })?;
+    let choice =
+        work(py, monitor, &raised, || a3_lab::choose::choose(&scene, &methods, &options, monitor))?;
     let chosen = |chosen: &a3_lab::choose::Chosen| {
         let why = match chosen.set_by {
             SetBy::Accuracy => "accuracy",
@@ -272,9 +257,7 @@ impl Stability {
         size: (u32, u32),
         step: Option<f64>,
     ) -> Drawn<'py> {
-        drawn(py, kind, size, &|width, height| {
-            self.0.figure(step, width, height)
-        })
+        drawn(py, kind, size, &|width, height| self.0.figure(step, width, height))
     }
 }
 
@@ -289,10 +272,8 @@ pub fn stability(
     let opened = Opened::new(py, &given)?;
     let (scene, methods) = (opened.scene(py)?, methods_named(py, &methods)?);
     let raised = opened.raised(methods.iter().copied());
-    work(py, monitor, &raised, || {
-        a3_lab::stability::stability(&scene, &methods, monitor)
-    })
-    .map(Stability)
+    work(py, monitor, &raised, || a3_lab::stability::stability(&scene, &methods, monitor))
+        .map(Stability)
 }
 
 /// A run of a comparison: method, setting, states one after the other, energies (J), work, and the
@@ -368,11 +349,7 @@ pub fn judge(
         (None, Some((name, bytes))) => StatesOf::Npz(name, bytes),
         (None, None) => return Err(wrong(py, "there are no states to judge")),
     };
-    let options = JudgeOptions {
-        until,
-        step,
-        within,
-    };
+    let options = JudgeOptions { until, step, within };
     let raised = opened.raised([]);
     let verdict = work(py, monitor, &raised, || {
         a3_lab::judge::judge_states(&scene, states, &options, monitor)
@@ -444,8 +421,6 @@ pub fn simplify(
         ..SimplifyOptions::new(error)
     };
     let scene = &opened.scene;
-    work(py, monitor, &[], || {
-        a3_lab::simplify::simplify(&scene.described()?, &options, monitor)
-    })
-    .map(Simplified)
+    work(py, monitor, &[], || a3_lab::simplify::simplify(&scene.described()?, &options, monitor))
+        .map(Simplified)
 }

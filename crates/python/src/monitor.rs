@@ -60,11 +60,8 @@ impl Monitor {
     /// so far.
     fn look(&self) -> (String, f64, Vec<String>) {
         let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        let share = if state.expected > 0.0 {
-            (state.done / state.expected).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
+        let share =
+            if state.expected > 0.0 { (state.done / state.expected).clamp(0.0, 1.0) } else { 0.0 };
         (state.stage.clone(), share, state.warnings.clone())
     }
 }

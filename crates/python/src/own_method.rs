@@ -73,9 +73,7 @@ pub fn add_method(
         Method::new(name, order, move |_| Box::new(Begun::new(&class, &raised)))
     } else {
         let function = Function::new(step, Shape::Flat, &raised)?;
-        Method::from_step(name, order, move |f, t, y, h| {
-            stepped(&function, f, (t, h), y, y.len())
-        })
+        Method::from_step(name, order, move |f, t, y, h| stepped(&function, f, (t, h), y, y.len()))
     };
     let with = |method: Method| method.with_evaluations(evaluations);
     let method = method.map(|method| with(method).with_default_step(default_step));
@@ -98,10 +96,7 @@ pub fn add_adaptive(
     let function = Function::new(step, Shape::Table(rows), &raised)?;
     let method = Method::from_estimated_step(name, order, move |f, t, y, h| {
         let found = stepped(&function, f, (t, h), y, rows * y.len())?;
-        Ok(found
-            .chunks_exact(y.len())
-            .map(<[f64]>::to_vec)
-            .collect::<Vec<_>>())
+        Ok(found.chunks_exact(y.len()).map(<[f64]>::to_vec).collect::<Vec<_>>())
     });
     let method = method.map(|method| method.with_evaluations(evaluations));
     register(py, method, raised).map(drop)
@@ -132,10 +127,7 @@ struct Begun {
 impl Begun {
     fn new(class: &Py<PyAny>, raised: &Raised) -> Self {
         let begin = |py: Python| Function::new(&class.bind(py).call0()?, Shape::Flat, raised);
-        Self {
-            step: Python::attach(begin),
-            raised: raised.clone(),
-        }
+        Self { step: Python::attach(begin), raised: raised.clone() }
     }
 }
 
@@ -209,9 +201,7 @@ fn register(
     method: Result<Method, Error>,
     raised: Raised,
 ) -> PyResult<&'static Method> {
-    let method = method
-        .map_err(|error| wrong(py, error.to_string()))?
-        .register();
+    let method = method.map_err(|error| wrong(py, error.to_string()))?.register();
     let mut all = RAISED.lock().unwrap_or_else(PoisonError::into_inner);
     all.insert(method.name.into(), raised);
     Ok(method)

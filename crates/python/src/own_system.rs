@@ -39,9 +39,7 @@ pub fn scene(system: &Bound<PyAny>, raised: &Raised) -> PyResult<Scene> {
         }
     } else {
         let f = Function::new(&call, Shape::Flat, raised)?;
-        let made = Ode::new(state.len(), move |t, y, dydt: &mut [f64]| {
-            f.of_state(t, y, dydt)
-        });
+        let made = Ode::new(state.len(), move |t, y, dydt: &mut [f64]| f.of_state(t, y, dydt));
         let scales: Vec<f64> = system.getattr("_scales")?.extract()?;
         let made = made.and_then(|made| {
             let cost = COST_OF_CALL + made.evaluation_cost();

@@ -144,9 +144,7 @@ impl Run {
     fn advance(&self, py: Python<'_>, time: f64, progress: Option<&Bound<PyAny>>) -> PyResult<()> {
         let calls = self.calls;
         self.check_time(py, time)?;
-        self.work(py, progress, move |run, go_on| {
-            advance(run, time, calls, go_on)
-        })
+        self.work(py, progress, move |run, go_on| advance(run, time, calls, go_on))
     }
 
     /// Advances to the first time at which a function of t and y passes through 0, or else to a
@@ -290,13 +288,7 @@ impl Run {
     /// total in evaluations.
     fn work_done(&self, py: Python<'_>) -> PyResult<(u64, u64, u64, u64, f64)> {
         let work = self.simulation(py)?.work();
-        Ok((
-            work.evaluations,
-            work.solves,
-            work.factorizations,
-            work.rejections,
-            work.total(),
-        ))
+        Ok((work.evaluations, work.solves, work.factorizations, work.rejections, work.total()))
     }
 
     /// Returns the state, as a flat array.
@@ -339,9 +331,7 @@ impl Run {
     /// Returns the numbers of the pinned particles.
     #[getter]
     fn pinned<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
-        let pins = self.network(py, |network| {
-            network.pins().map(|(i, _)| i as i64).collect()
-        });
+        let pins = self.network(py, |network| network.pins().map(|(i, _)| i as i64).collect());
         Ok(PyArray1::from_vec(py, pins?.unwrap_or_default()))
     }
 

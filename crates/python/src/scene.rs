@@ -25,9 +25,7 @@ pub fn source(kind: &str, text: &str) -> Result<Source, Failure> {
         "named" => Ok(setup::find(text, "scene")?),
         "toml" => Ok(Source::written(text)?),
         "table" => Ok(Source::tabulated(text)?),
-        _ => Err(Failure::usage(format!(
-            "there is no kind of scene `{kind}`"
-        ))),
+        _ => Err(Failure::usage(format!("there is no kind of scene `{kind}`"))),
     }
 }
 
@@ -99,10 +97,7 @@ impl OpenScene {
     }
 
     fn request(&self, source: &Source) -> Request {
-        Request {
-            source: source.clone(),
-            options: self.options,
-        }
+        Request { source: source.clone(), options: self.options }
     }
 
     /// Returns the method that is given, or else that of the scene. Otherwise this is the explicit
@@ -111,9 +106,9 @@ impl OpenScene {
     pub fn method_or(&self, method: Option<&'static Method>) -> &'static Method {
         match &self.made {
             Made::Read(source) => source.solver_or(method),
-            Made::Built(_) => method
-                .or_else(|| integrators::find("dop853"))
-                .unwrap_or(&integrators::METHODS[0]),
+            Made::Built(_) => {
+                method.or_else(|| integrators::find("dop853")).unwrap_or(&integrators::METHODS[0])
+            }
         }
     }
 
@@ -206,10 +201,7 @@ impl Opened {
     /// They are empty then.
     pub fn raised<'m>(&self, methods: impl IntoIterator<Item = &'m Method>) -> Vec<Raised> {
         let of_methods = methods.into_iter().filter_map(raised_by);
-        let all: Vec<_> = [self.raised.clone()]
-            .into_iter()
-            .chain(of_methods)
-            .collect();
+        let all: Vec<_> = [self.raised.clone()].into_iter().chain(of_methods).collect();
         for raised in &all {
             raised.take();
         }

@@ -45,11 +45,7 @@ struct Place<'a, T>(&'a Turns<T>);
 impl<T: Send> Turns<T> {
     /// Creates the turns of a value.
     pub fn new(value: T) -> Self {
-        Self {
-            value: Mutex::new(value),
-            queue: Mutex::default(),
-            changed: Condvar::new(),
-        }
+        Self { value: Mutex::new(value), queue: Mutex::default(), changed: Condvar::new() }
     }
 
     fn queue(&self) -> MutexGuard<'_, VecDeque<ThreadId>> {

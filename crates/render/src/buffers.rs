@@ -43,11 +43,7 @@ impl Shape {
 
 impl Instances {
     pub(crate) fn new(device: &wgpu::Device, label: &'static str, usage: BufferUsages) -> Self {
-        Self {
-            label,
-            usage,
-            buffer: buffer(device, label, usage, 4096),
-        }
+        Self { label, usage, buffer: buffer(device, label, usage, 4096) }
     }
 
     /// Replaces the instances.
@@ -170,10 +166,7 @@ impl List {
         let size = (ROW as u32, length.div_ceil(ROW).max(1) as u32);
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         let texture = device.create_texture(&flat(label, size, format, usage));
-        Self {
-            view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
-            texture,
-        }
+        Self { view: texture.create_view(&wgpu::TextureViewDescriptor::default()), texture }
     }
 
     /// Creates a list of these items.
@@ -335,11 +328,8 @@ mod tests {
     #[test]
     fn every_point_knows_its_triangles() {
         let triangles = vec![[0, 2, 1], [1, 2, 3], [4, 1, 3]];
-        let (first, around) = triangles_around(&Topology {
-            points: 6,
-            triangles,
-            ..Topology::default()
-        });
+        let (first, around) =
+            triangles_around(&Topology { points: 6, triangles, ..Topology::default() });
         assert_eq!(first, [0, 1, 4, 6, 8, 9, 9]);
         let of = |i: usize| &around[first[i] as usize..first[i + 1] as usize];
         assert_eq!(of(0), [[2, 1]]);

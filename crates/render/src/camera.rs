@@ -88,10 +88,7 @@ impl Camera {
     /// Returns whether another camera shows the same in its focus.
     #[must_use]
     pub fn shows_as(&self, other: &Self) -> bool {
-        Self {
-            focus: other.focus,
-            ..*self
-        } == *other
+        Self { focus: other.focus, ..*self } == *other
     }
 
     /// Moves the target, unless the new one is too far away.

@@ -151,14 +151,7 @@ impl Gpu {
                 note.get_or_insert_with(|| one_line(&e.to_string()));
             }
         }));
-        Ok(Self {
-            instance,
-            adapter,
-            device,
-            queue,
-            lost,
-            refusal,
-        })
+        Ok(Self { instance, adapter, device, queue, lost, refusal })
     }
 
     /// Returns the name and the backend of the adapter.
@@ -227,11 +220,7 @@ pub(crate) fn flat(
 
 /// Returns the extent of a part of a texture (px).
 pub(crate) fn extent(width: u32, height: u32) -> wgpu::Extent3d {
-    wgpu::Extent3d {
-        width,
-        height,
-        depth_or_array_layers: 1,
-    }
+    wgpu::Extent3d { width, height, depth_or_array_layers: 1 }
 }
 
 /// The first adapter whose name contains `name`, in upper or lower case.

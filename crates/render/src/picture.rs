@@ -122,22 +122,13 @@ impl Line {
     /// Creates a line between two points (m), `width` points wide.
     #[must_use]
     pub fn new(from: [f32; 3], to: [f32; 3], width: f32, color: [f32; 4]) -> Self {
-        Self {
-            from,
-            width,
-            to,
-            shadow: 0.0,
-            color,
-        }
+        Self { from, width, to, shadow: 0.0, color }
     }
 
     /// Gives the line a shadow.
     #[must_use]
     pub fn with_shadow(self) -> Self {
-        Self {
-            shadow: 1.0,
-            ..self
-        }
+        Self { shadow: 1.0, ..self }
     }
 }
 
@@ -244,12 +235,7 @@ impl Tile {
     /// Returns the whole of a target of this width and height (px).
     #[must_use]
     pub fn whole((width, height): (u32, u32)) -> Self {
-        Self {
-            x: 0,
-            y: 0,
-            width,
-            height,
-        }
+        Self { x: 0, y: 0, width, height }
     }
 
     /// Returns the width over the height.
@@ -270,9 +256,6 @@ impl Tile {
     /// from its top.
     #[must_use]
     pub fn place(&self, [x, y]: [f32; 2]) -> [f32; 2] {
-        [
-            (x - self.x as f32) / self.width as f32,
-            (y - self.y as f32) / self.height as f32,
-        ]
+        [(x - self.x as f32) / self.width as f32, (y - self.y as f32) / self.height as f32]
     }
 }

@@ -10,11 +10,8 @@ use crate::gpu::DEPTH;
 use crate::picture::{Ball, Corner, Line, Solid, Spring};
 
 /// The source of the shaders.
-pub(crate) const SOURCE: &str = concat!(
-    include_str!("scene.wgsl"),
-    include_str!("floor.wgsl"),
-    include_str!("lines.wgsl")
-);
+pub(crate) const SOURCE: &str =
+    concat!(include_str!("scene.wgsl"), include_str!("floor.wgsl"), include_str!("lines.wgsl"));
 
 /// The pipelines, one for each kind of object.
 pub(crate) struct Pipelines {
@@ -101,15 +98,9 @@ impl Pipelines {
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
                     buffers: &buffers,
                 },
-                primitive: wgpu::PrimitiveState {
-                    topology,
-                    ..Default::default()
-                },
+                primitive: wgpu::PrimitiveState { topology, ..Default::default() },
                 depth_stencil: Some(depth_stencil(layer)),
-                multisample: wgpu::MultisampleState {
-                    count: samples,
-                    ..Default::default()
-                },
+                multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
                 fragment: Some(wgpu::FragmentState {
                     module: &shader,
                     entry_point: Some(&format!("{fragment}_fragment")),
@@ -155,22 +146,12 @@ impl Pipelines {
             ("ball", "ball", &balls[..]),
             ("solid", "ball", &solids[..]),
         ];
-        let lines = [
-            ("wire", &wires[..]),
-            ("spring", &springs[..]),
-            ("line", &lines[..]),
-        ];
+        let lines = [("wire", &wires[..]), ("spring", &springs[..]), ("line", &lines[..])];
         let list = PrimitiveTopology::TriangleList;
         let strip = PrimitiveTopology::TriangleStrip;
         let cast = |what: &str| {
             surfaces.map(|(kind, _, buffers)| {
-                pipeline(
-                    &format!("{kind}_{what}"),
-                    "shadow",
-                    list,
-                    Layer::Shadow,
-                    buffers,
-                )
+                pipeline(&format!("{kind}_{what}"), "shadow", list, Layer::Shadow, buffers)
             })
         };
         Self {
@@ -215,11 +196,7 @@ fn stream(
     attributes: &[wgpu::VertexAttribute],
     stride: usize,
 ) -> wgpu::VertexBufferLayout<'_> {
-    wgpu::VertexBufferLayout {
-        array_stride: stride as u64,
-        step_mode,
-        attributes,
-    }
+    wgpu::VertexBufferLayout { array_stride: stride as u64, step_mode, attributes }
 }
 
 /// Returns how a layer is combined with the picture so far, unless it replaces it.
@@ -231,10 +208,7 @@ fn blend(layer: Layer) -> Option<wgpu::BlendState> {
     };
     match layer {
         Layer::Back | Layer::Floor | Layer::Solid => None,
-        Layer::Shadow => Some(wgpu::BlendState {
-            color: darkest,
-            alpha: darkest,
-        }),
+        Layer::Shadow => Some(wgpu::BlendState { color: darkest, alpha: darkest }),
         Layer::Over => Some(wgpu::BlendState::ALPHA_BLENDING),
     }
 }
@@ -259,12 +233,7 @@ fn depth_stencil(layer: Layer) -> wgpu::DepthStencilState {
             Layer::Shadow => CompareFunction::Always,
             _ => CompareFunction::LessEqual,
         }),
-        stencil: wgpu::StencilState {
-            front: face,
-            back: face,
-            read_mask: 0xff,
-            write_mask: 0xff,
-        },
+        stencil: wgpu::StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0xff },
         bias: wgpu::DepthBiasState::default(),
     }
 }

@@ -370,18 +370,12 @@ fn globals(picture: &Picture, tile: Tile) -> Globals {
         let squares = [0, 1, 2].map(|axis| (p[axis] - eye[axis]).powi(2));
         (squares[0] + squares[1] + squares[2]).sqrt()
     });
-    let (near, far) = distances.fold((f32::INFINITY, 0.0f32), |(near, far), d| {
-        (near.min(d), far.max(d))
-    });
+    let (near, far) =
+        distances.fold((f32::INFINITY, 0.0f32), |(near, far), d| (near.min(d), far.max(d)));
     Globals {
         view_projection: picture.camera.view_projection(tile.aspect()).into(),
         eye: [eye.x, eye.y, eye.z, picture.camera.unit()],
-        light: [
-            LIGHT[0] / length,
-            LIGHT[1] / length,
-            LIGHT[2] / length,
-            marks,
-        ],
+        light: [LIGHT[0] / length, LIGHT[1] / length, LIGHT[2] / length, marks],
         tile: [tile.x, tile.y, tile.width, tile.height].map(|side| side as f32),
         floor: [
             picture.floor.map_or(0.0, |floor| floor.height),
@@ -404,25 +398,14 @@ mod tests {
     /// shaders.
     fn ridge(gpu: &Gpu, source: &str) -> Vec<u8> {
         let ridge = [[-1.0, 0.0], [-0.6, 0.5], [1.0, 0.0]];
-        let points = ridge
-            .map(|[x, z]| [[x, 0.6, z, 0.0], [x, -0.6, z, 0.0]])
-            .concat();
+        let points = ridge.map(|[x, z]| [[x, 0.6, z, 0.0], [x, -0.6, z, 0.0]]).concat();
         let triangles = vec![[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]];
-        let topology = Topology {
-            points: points.len(),
-            triangles,
-            ..Topology::default()
-        };
+        let topology = Topology { points: points.len(), triangles, ..Topology::default() };
         let samples = gpu.samples(OFFSCREEN_FORMAT);
         let mut renderer = Renderer::with_source(gpu, source, OFFSCREEN_FORMAT, samples, &topology);
-        let picture = Picture {
-            points: &points,
-            ..Picture::new(Camera::look_at([0.0, 0.0, 3.0], [0.0; 3]))
-        };
-        Offscreen::new(gpu, (96, 64))
-            .unwrap()
-            .render(gpu, &mut renderer, &picture)
-            .unwrap()
+        let picture =
+            Picture { points: &points, ..Picture::new(Camera::look_at([0.0, 0.0, 3.0], [0.0; 3])) };
+        Offscreen::new(gpu, (96, 64)).unwrap().render(gpu, &mut renderer, &picture).unwrap()
     }
 
     /// Shaders with wrong normals draw a different picture.
@@ -447,19 +430,12 @@ mod tests {
             ("out.normal = n;", "out.normal = vec3(0.0, 0.0, 1.0);"),
             // Only one of the triangles; then all of them with equal weights.
             (sum, &sum.replace("n +=", "n =")),
-            (
-                sum,
-                &sum.replace("cross(", "normalize(cross(")
-                    .replace(");", "));"),
-            ),
+            (sum, &sum.replace("cross(", "normalize(cross(").replace(");", "));")),
             (front, &format!("1.0 + 0.0 * {front} - 2.0")),
         ] {
             assert!(SOURCE.contains(good));
             let wrong = ridge(&gpu, &SOURCE.replace(good, bad));
-            let errors = right
-                .iter()
-                .zip(&wrong)
-                .map(|(a, b)| u64::from(a.abs_diff(*b)));
+            let errors = right.iter().zip(&wrong).map(|(a, b)| u64::from(a.abs_diff(*b)));
             let mean = errors.sum::<u64>() as f64 / right.len() as f64;
             assert!(mean > 0.4, "{bad}: mean error {mean}");
         }

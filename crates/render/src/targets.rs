@@ -30,11 +30,7 @@ impl Targets {
             });
             texture.create_view(&wgpu::TextureViewDescriptor::default())
         };
-        Self {
-            multisampled: (samples > 1).then(|| texture(color)),
-            depth: texture(DEPTH),
-            size,
-        }
+        Self { multisampled: (samples > 1).then(|| texture(color)), depth: texture(DEPTH), size }
     }
 
     /// Returns the width and height (px).
@@ -69,10 +65,7 @@ impl Targets {
                 view,
                 depth_slice: None,
                 resolve_target,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(clear),
-                    store,
-                },
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store },
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.depth,
@@ -170,12 +163,7 @@ impl Transfer {
                 resource: wgpu::BindingResource::TextureView(&picture),
             }],
         });
-        Self {
-            picture,
-            bind,
-            pipeline,
-            below,
-        }
+        Self { picture, bind, pipeline, below }
     }
 
     /// Returns the view that pictures, or text, are drawn into.
@@ -214,10 +202,7 @@ impl Transfer {
                 view: target,
                 depth_slice: None,
                 resolve_target: None,
-                ops: wgpu::Operations {
-                    load: self.below,
-                    store: wgpu::StoreOp::Store,
-                },
+                ops: wgpu::Operations { load: self.below, store: wgpu::StoreOp::Store },
             })],
             ..Default::default()
         });
@@ -341,19 +326,13 @@ impl Offscreen {
         };
         encoder.copy_texture_to_buffer(
             self.texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &self.buffer,
-                layout,
-            },
+            wgpu::TexelCopyBufferInfo { buffer: &self.buffer, layout },
             self.texture.size(),
         );
-        gpu.queue
-            .submit(before.into_iter().chain([encoder.finish()]));
+        gpu.queue.submit(before.into_iter().chain([encoder.finish()]));
         let slice = self.buffer.slice(..);
         slice.map_async(wgpu::MapMode::Read, |_| {});
-        gpu.device
-            .poll(wgpu::PollType::wait_indefinitely())
-            .map_err(|_| GpuError::Lost)?;
+        gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| GpuError::Lost)?;
         gpu.check()?;
         let mapped = slice.get_mapped_range();
         let mapped = mapped.map_err(|e| GpuError::Refused(e.to_string()))?;
@@ -386,21 +365,14 @@ fn straighten(pixels: &mut [u8]) {
 /// Returns the linear light of an sRGB channel (IEC 61966-2-1).
 fn linear(channel: u8) -> f32 {
     let c = f32::from(channel) / 255.0;
-    if c <= 0.04045 {
-        c / 12.92
-    } else {
-        ((c + 0.055) / 1.055).powf(2.4)
-    }
+    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
 /// Returns the sRGB channel of a linear light: the inverse of [`linear`].
 fn encoded(light: f32) -> u8 {
     let light = light.min(1.0);
-    let c = if light <= 0.003_130_8 {
-        12.92 * light
-    } else {
-        1.055 * light.powf(1.0 / 2.4) - 0.055
-    };
+    let c =
+        if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
     (255.0 * c).round() as u8
 }
 

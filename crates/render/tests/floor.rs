@@ -16,12 +16,7 @@ fn draw(
     balls: &[Ball],
     floor: Option<Floor>,
 ) -> RgbaImage {
-    let picture = Picture {
-        points,
-        balls,
-        floor,
-        ..Picture::new(camera())
-    };
+    let picture = Picture { points, balls, floor, ..Picture::new(camera()) };
     common::draw(gpu, SIZE, topology, picture)
 }
 
@@ -44,11 +39,7 @@ fn squares(squares: &[(f32, f32)]) -> (Topology, Vec<[f32; 4]>) {
     let triangles = (0..squares.len() as u32)
         .flat_map(|k| [[0, 2, 1], [0, 3, 2]].map(|t| t.map(|i| 4 * k + i)))
         .collect();
-    let topology = Topology {
-        points: points.len(),
-        triangles,
-        ..Topology::default()
-    };
+    let topology = Topology { points: points.len(), triangles, ..Topology::default() };
     (topology, points)
 }
 
@@ -120,18 +111,11 @@ fn the_ground_hides_nothing() {
 fn edges_are_sharp_where_points_are_split() {
     let Some(gpu) = gpu() else { return };
     let ridge = [[0.5, 0.0], [0.0, 0.7], [-0.5, 0.0]];
-    let points = ridge
-        .map(|[x, y]| [[x, y, -1.0, 0.0], [x, y, 1.0, 0.0]])
-        .concat();
+    let points = ridge.map(|[x, y]| [[x, y, -1.0, 0.0], [x, y, 1.0, 0.0]]).concat();
     let smooth = vec![[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]];
     let sharp = vec![[0, 1, 6], [6, 1, 7], [8, 9, 4], [4, 9, 5]];
     let spread = |triangles: Vec<[u32; 3]>, splits: Vec<u32>| {
-        let topology = Topology {
-            points: points.len(),
-            triangles,
-            splits,
-            ..Topology::default()
-        };
+        let topology = Topology { points: points.len(), triangles, splits, ..Topology::default() };
         let picture = draw(&gpu, &topology, &points, &[], None);
         let bright = [0.1, 0.9]
             .map(|share| i32::from(pixel(&picture, [0.5 * (1.0 - share), 0.7 * share, 0.0])[0]));

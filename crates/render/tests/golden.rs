@@ -60,17 +60,9 @@ fn add_coloured_solids(sheet: &mut Sheet) {
             values: [-0.9, -0.9, 0.9, 0.9, -0.9, -0.9, 0.9, 0.9].map(along),
         },
     ];
-    let corner = |x: f32, z: f32, value: f32| Corner {
-        place: [x, 0.05, z],
-        value,
-        normal: [0.0, 1.0, 0.0],
-    };
-    let corners = [
-        (-1.2, 2.0, 0.0),
-        (1.2, 2.0, 1.0),
-        (1.2, 1.4, 1.0),
-        (-1.2, 1.4, 0.0),
-    ];
+    let corner =
+        |x: f32, z: f32, value: f32| Corner { place: [x, 0.05, z], value, normal: [0.0, 1.0, 0.0] };
+    let corners = [(-1.2, 2.0, 0.0), (1.2, 2.0, 1.0), (1.2, 1.4, 1.0), (-1.2, 1.4, 0.0)];
     let corners = corners.map(|(x, z, value)| corner(x, z, value));
     sheet.liquid = (corners.into(), vec![[0, 1, 2], [0, 2, 3]]);
 }
@@ -144,11 +136,7 @@ fn lines_are_as_wide_as_asked_for() {
     let black = [0.0, 0.0, 0.0, 1.0];
     sheet.lines = vec![Line::new([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], 6.0, black)];
     for scale in [1.0f32, 2.0, 3.0] {
-        let picture = Picture {
-            scale,
-            floor: None,
-            ..sheet.picture(Style::Shaded)
-        };
+        let picture = Picture { scale, floor: None, ..sheet.picture(Style::Shaded) };
         let picture = draw(&gpu, &sheet, picture);
         let column = |y: u32| picture.get_pixel(SIZE.0 / 2, y).0[0];
         // Ink in the middle column, from the darkness of its pixels.
@@ -167,11 +155,8 @@ fn a_liquid_is_lit_by_its_normals() {
     let sheet = Sheet::empty([0.0, 0.0, 4.0], [0.0; 3]);
     let middle = |style, normal: Option<[f32; 3]>| {
         let places = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]];
-        let corners = places.map(|place| Corner {
-            place,
-            value: -2.0,
-            normal: normal.unwrap_or_default(),
-        });
+        let corners =
+            places.map(|place| Corner { place, value: -2.0, normal: normal.unwrap_or_default() });
         let picture = Picture {
             floor: None,
             liquid: Liquid {
@@ -200,11 +185,7 @@ fn pictures_side_by_side() {
     let sheet = Sheet::new();
     let pictures = [Style::Shaded, Style::Wireframe].map(|style| sheet.picture(style));
     let alone = pictures.map(|picture| draw(&gpu, &sheet, picture));
-    let tiles = [(0, 0), (SIZE.0 + 5, 37)].map(|(x, y)| Tile {
-        x,
-        y,
-        ..Tile::whole(SIZE)
-    });
+    let tiles = [(0, 0), (SIZE.0 + 5, 37)].map(|(x, y)| Tile { x, y, ..Tile::whole(SIZE) });
     let size = (2 * SIZE.0 + 10, SIZE.1 + 40);
     let placed = [0, 1].map(|k| (pictures[k], tiles[k]));
     let both = common::draw_tiles(&gpu, size, &sheet.topology, &placed);
@@ -226,10 +207,7 @@ fn transparent_pictures_show_the_same_things() {
     let mut sheet = Sheet::new();
     sheet.lines[0].color = [0.9, 0.4, 0.02, 1.0];
     let draw = |sheet: &Sheet, transparent| {
-        let picture = Picture {
-            transparent,
-            ..sheet.picture(Style::Shaded)
-        };
+        let picture = Picture { transparent, ..sheet.picture(Style::Shaded) };
         draw(&gpu, sheet, picture)
     };
     let (paper, bare) = (draw(&sheet, false), draw(&sheet, true));
@@ -258,28 +236,14 @@ fn transparent_pictures_show_the_same_things() {
 fn solids_have_the_shape_asked_for() {
     let Some(gpu) = gpu() else { return };
     let sheet = Sheet::empty([0.0, 1.0, 6.0], [0.0, 1.0, 0.0]);
-    let ball = Ball {
-        center: [0.0, 1.0, 0.0],
-        radius: 0.5,
-        color: [0.3, 0.36, 0.44, 1.0],
-    };
+    let ball = Ball { center: [0.0, 1.0, 0.0], radius: 0.5, color: [0.3, 0.36, 0.44, 1.0] };
     let solid = |radius, [x, y, z]: [f32; 3], turn: f32| {
         let (s, c) = turn.sin_cos();
         let axes = [[c, s, 0.0, x], [-s, c, 0.0, y], [0.0, 0.0, 1.0, z]];
-        Solid {
-            values: Solid::PLAIN,
-            center: ball.center,
-            radius,
-            axes,
-            color: ball.color,
-        }
+        Solid { values: Solid::PLAIN, center: ball.center, radius, axes, color: ball.color }
     };
     let draw = |balls: &[Ball], solids: &[Solid]| {
-        let picture = Picture {
-            balls,
-            solids,
-            ..sheet.picture(Style::Shaded)
-        };
+        let picture = Picture { balls, solids, ..sheet.picture(Style::Shaded) };
         draw(&gpu, &sheet, picture)
     };
     let round = draw(&[ball], &[]);

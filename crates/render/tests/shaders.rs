@@ -28,10 +28,7 @@ fn valid(source: &str) -> (naga::Module, naga::valid::ModuleInfo) {
 #[test]
 fn every_shader_is_valid_and_can_be_said_in_the_language_of_webgl() {
     let options = glsl::Options {
-        version: glsl::Version::Embedded {
-            version: 300,
-            is_webgl: true,
-        },
+        version: glsl::Version::Embedded { version: 300, is_webgl: true },
         ..Default::default()
     };
     for (source, least) in SOURCES.into_iter().zip([20, 2]) {

@@ -50,9 +50,7 @@ fn a_validation_error_is_reported() {
     // A depth format is not a colour format.
     let depth = wgpu::TextureFormat::Depth32Float;
     let _ = Renderer::new(&gpu, depth, 1, &Sheet::new().topology);
-    let Err(GpuError::Refused(why)) = gpu.check() else {
-        panic!("not reported")
-    };
+    let Err(GpuError::Refused(why)) = gpu.check() else { panic!("not reported") };
     assert!(!why.contains('\n'), "{why}");
     gpu.check().unwrap();
 }

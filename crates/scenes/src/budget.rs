@@ -77,9 +77,7 @@ impl Budget {
 
 /// Returns whether the system can give the process this much memory (bytes).
 fn is_free(bytes: usize) -> bool {
-    std::hint::black_box(&mut Vec::<u8>::new())
-        .try_reserve_exact(bytes)
-        .is_ok()
+    std::hint::black_box(&mut Vec::<u8>::new()).try_reserve_exact(bytes).is_ok()
 }
 
 /// Checks that a text has few enough tokens (commas, brackets, ends of lines, gaps between words)

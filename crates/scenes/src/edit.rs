@@ -392,11 +392,7 @@ impl Splice {
     /// Returns the splice that undoes this one.
     #[must_use]
     pub fn back(self) -> Self {
-        Self {
-            removed: self.added,
-            added: self.removed,
-            ..self
-        }
+        Self { removed: self.added, added: self.removed, ..self }
     }
 
     /// Creates the places from which items were removed, and to which others were added.

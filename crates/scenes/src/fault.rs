@@ -71,11 +71,7 @@ impl From<Fault> for a3_core::Error {
 impl Fault {
     /// Creates a fault of a key, whose line is not yet known.
     pub(crate) fn new(key: impl Into<String>, why: impl fmt::Display) -> Self {
-        Self {
-            line: None,
-            key: key.into(),
-            why: why.to_string(),
-        }
+        Self { line: None, key: key.into(), why: why.to_string() }
     }
 
     /// Creates the fault of the second of two keys of which only one may be given.
@@ -92,28 +88,19 @@ impl Fault {
 
     /// Prefixes the key with that of the part of the description that it is in.
     pub(crate) fn within(self, key: &str) -> Self {
-        Self {
-            key: join(key, &self.key),
-            ..self
-        }
+        Self { key: join(key, &self.key), ..self }
     }
 
     /// Sets the line, unless it is known.
     pub(crate) fn at(self, line: impl FnOnce() -> usize) -> Self {
-        Self {
-            line: self.line.or_else(|| Some(line())),
-            ..self
-        }
+        Self { line: self.line.or_else(|| Some(line())), ..self }
     }
 
     /// Creates the fault of a text that is no TOML.
     pub(crate) fn of_toml(text: &str, error: &toml::de::Error) -> Self {
         let at = error.span().map(|span| span.start);
         let rest = at.and_then(|at| text.get(at..)).unwrap_or_default();
-        Self {
-            line: at.map(|at| line(text, at)),
-            ..Self::new("", of_toml(error.message(), rest))
-        }
+        Self { line: at.map(|at| line(text, at)), ..Self::new("", of_toml(error.message(), rest)) }
     }
 
     /// Creates the fault of a text that is no JSON and begins at this line.

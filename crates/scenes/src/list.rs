@@ -190,10 +190,7 @@ const NAMES: &[(&str, &str)] = &[
 /// number is not from -1e13 to 1e13.
 pub fn parse_json(text: &str) -> Result<(Description, Places), Fault> {
     let (listed, places): (Listed, Places) = reader::read_json(text)?;
-    let mut pin = vec![Pin {
-        particles: listed.pinned,
-        ..Pin::default()
-    }];
+    let mut pin = vec![Pin { particles: listed.pinned, ..Pin::default() }];
     pin.retain(|pin| !pin.particles.is_empty());
     let description = Description {
         name: listed.name,

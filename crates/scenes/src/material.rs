@@ -60,12 +60,7 @@ const fn fabric(
     about: &'static str,
     [density, stretch, shear, bending]: [f64; 4],
 ) -> Material {
-    let stuff = Stuff::Fabric {
-        density,
-        stretch,
-        shear,
-        bending,
-    };
+    let stuff = Stuff::Fabric { density, stretch, shear, bending };
     Material { name, about, stuff }
 }
 
@@ -74,12 +69,7 @@ const fn matter(
     about: &'static str,
     [density, young, poisson, loss]: [f64; 4],
 ) -> Material {
-    let stuff = Stuff::Matter {
-        density,
-        young,
-        poisson,
-        loss,
-    };
+    let stuff = Stuff::Matter { density, young, poisson, loss };
     Material { name, about, stuff }
 }
 
@@ -121,9 +111,7 @@ pub(crate) enum Given {
 /// Returns the names of the materials of fabrics, or those of solids.
 pub(crate) fn names(of_fabrics: bool) -> Vec<&'static str> {
     let is_fabric = |material: &&Material| matches!(material.stuff, Stuff::Fabric { .. });
-    let all = MATERIALS
-        .iter()
-        .filter(|material| is_fabric(material) == of_fabrics);
+    let all = MATERIALS.iter().filter(|material| is_fabric(material) == of_fabrics);
     all.map(|material| material.name).collect()
 }
 
@@ -154,18 +142,12 @@ pub(crate) fn keys(
         refuse!("`{name}` is {is}: the materials of {bodies} are {known}");
     }
     let all = match material.stuff {
-        Stuff::Fabric {
-            density,
-            stretch,
-            shear,
-            bending,
-        } => of_fabric(kind, [density, stretch, shear, bending], own),
-        Stuff::Matter {
-            density,
-            young,
-            poisson,
-            loss,
-        } => of_matter(kind, [density, young, poisson, loss], own),
+        Stuff::Fabric { density, stretch, shear, bending } => {
+            of_fabric(kind, [density, stretch, shear, bending], own)
+        }
+        Stuff::Matter { density, young, poisson, loss } => {
+            of_matter(kind, [density, young, poisson, loss], own)
+        }
     };
     let is_given = |key: &str| own(key).is_some();
     let is_free = |key: &&str| match *key {
@@ -184,10 +166,8 @@ fn of_fabric(
     [density, stretch, shear, bending]: [f64; 4],
     own: &dyn Fn(&str) -> Option<Vec<f64>>,
 ) -> Vec<(&'static str, Given)> {
-    let mut all = vec![
-        ("density", Given::Number(density)),
-        ("damping", Given::Number(damping(FABRIC_LOSS))),
-    ];
+    let mut all =
+        vec![("density", Given::Number(density)), ("damping", Given::Number(damping(FABRIC_LOSS)))];
     if kind == "MeshCloth" {
         // A sheet of equilateral triangles of such springs stretches like the fabric.
         let structural = 0.75_f64.sqrt() * stretch;
@@ -207,9 +187,9 @@ fn of_fabric(
 /// the fabric of a name, which are as wide as a cell (m); `None` if there is no such fabric.
 pub(crate) fn strip_of(name: &str, spacing: f64) -> Option<[f64; 2]> {
     match MATERIALS.iter().find(|it| it.name == name)?.stuff {
-        Stuff::Fabric {
-            stretch, bending, ..
-        } => Some(strip(stretch, bending, spacing).map(|(_, value)| value)),
+        Stuff::Fabric { stretch, bending, .. } => {
+            Some(strip(stretch, bending, spacing).map(|(_, value)| value))
+        }
         Stuff::Matter { .. } => None,
     }
 }
@@ -219,10 +199,7 @@ pub(crate) fn strip_of(name: &str, spacing: f64) -> Option<[f64; 2]> {
 fn strip(stretch: f64, bending: f64, spacing: f64) -> [(&'static str, f64); 2] {
     // A strip that were softer before it buckles would have no law.
     let least = 5.0 * bending / (spacing * spacing);
-    [
-        ("bending", bending * spacing),
-        ("compression", stretch.max(least)),
-    ]
+    [("bending", bending * spacing), ("compression", stretch.max(least))]
 }
 
 /// Returns the keys of a jelly, an elastic solid or a rigid body.
@@ -233,10 +210,9 @@ fn of_matter(
 ) -> Vec<(&'static str, Given)> {
     let mut all = vec![("density", Given::Number(density))];
     match kind {
-        "Solid" => all.extend([
-            ("young", Given::Number(young)),
-            ("poisson", Given::Number(poisson)),
-        ]),
+        "Solid" => {
+            all.extend([("young", Given::Number(young)), ("poisson", Given::Number(poisson))])
+        }
         "Jelly" => {
             let cell = |axis: usize| {
                 let [size, grid] = ["size", "grid"].map(|key| own(key)?.get(axis).copied());

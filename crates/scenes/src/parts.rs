@@ -22,14 +22,9 @@ const SPRINGS: [&str; 3] = ["structural springs", "shear springs", "bend springs
 /// Lists the parts of the scene that can be left out or replaced by simpler ones.
 #[must_use]
 pub fn parts(scene: &Description) -> Vec<Part> {
-    let named = |change, name: &str| Part {
-        name: name.into(),
-        change,
-    };
-    let mut all = vec![
-        named(Change::Drag, "drag"),
-        named(Change::Damping, "damping of springs and solids"),
-    ];
+    let named = |change, name: &str| Part { name: name.into(), change };
+    let mut all =
+        vec![named(Change::Drag, "drag"), named(Change::Damping, "damping of springs and solids")];
     all.extend((0..3).map(|kind| named(Change::Springs(kind), SPRINGS[kind])));
     all.extend([
         named(Change::Buckling, "buckling of bend springs"),
@@ -125,10 +120,7 @@ fn leave_out(scene: &mut Description, change: Change) {
         Change::Tear => scene.tear = None,
         Change::Viscosity => scene.fluid.iter_mut().for_each(|it| it.viscosity = 0.0),
         Change::Wind => scene.wind.iter_mut().for_each(|wind| wind.on = false),
-        Change::Gusts => scene
-            .wind
-            .iter_mut()
-            .for_each(|wind| wind.steady |= wind.on),
+        Change::Gusts => scene.wind.iter_mut().for_each(|wind| wind.steady |= wind.on),
         Change::WindByParticles => simplify_wind(scene),
         Change::Friction => {
             each_contact(scene, |[friction, _]| *friction = 0.0);

@@ -59,10 +59,7 @@ pub fn regridded(scene: &Description, factor: f64, particles: usize) -> Result<R
     keep_forces_per_mass(&mut other, scene, &places)?;
     other.trail = None;
     refuse!(if places.count == particles => "its cells cannot be larger and keep their shape");
-    Ok(Regridded {
-        description: other,
-        places: places.of,
-    })
+    Ok(Regridded { description: other, places: places.of })
 }
 
 /// Counts the bodies that may have a grid.
@@ -317,12 +314,7 @@ impl Lattice {
             [0, 1, 2].map(|axis| cells[axis].round() as i64)
         };
         let numbers = points.iter().enumerate().map(|(i, p)| (index(p), i));
-        Self {
-            origin,
-            spacing,
-            dimensions,
-            numbers: numbers.collect(),
-        }
+        Self { origin, spacing, dimensions, numbers: numbers.collect() }
     }
 
     /// Returns the particles at the corners of the nearest complete cell, with their weights at a
@@ -345,8 +337,7 @@ impl Lattice {
             complete.min_by(|(_, a), (_, b)| {
                 let far = |cell: &[i64; 3]| {
                     let axes = 0..self.dimensions;
-                    axes.map(|k| (cell[k] as f64 + 0.5 - at[k]).powi(2))
-                        .sum::<f64>()
+                    axes.map(|k| (cell[k] as f64 + 0.5 - at[k]).powi(2)).sum::<f64>()
                 };
                 far(a).total_cmp(&far(b))
             })

@@ -117,12 +117,7 @@ pub struct Defaults {
 
 impl Default for Defaults {
     fn default() -> Self {
-        Self {
-            solver: None,
-            control: None,
-            duration: None,
-            step_scale: 1.0,
-        }
+        Self { solver: None, control: None, duration: None, step_scale: 1.0 }
     }
 }
 
@@ -132,10 +127,8 @@ impl Defaults {
     /// of other methods are shortened in proportion. A scaled step is rounded to two digits.
     #[must_use]
     pub fn control_of(&self, method: &Method) -> Control {
-        let own = self.control.filter(|_| {
-            self.solver
-                .is_some_and(|solver| std::ptr::eq(solver, method))
-        });
+        let own =
+            self.control.filter(|_| self.solver.is_some_and(|solver| std::ptr::eq(solver, method)));
         let scale = self.step_scale
             * match (own, self.control, self.solver.map(|s| s.default_control)) {
                 (None, Some(Control::Step(own)), Some(Control::Step(usual))) => {

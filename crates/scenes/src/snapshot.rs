@@ -52,11 +52,7 @@ pub fn scale_springs(description: &mut Description, stiffness: f64, damping: f64
 /// Multiplies the force or velocity of the wind by a factor, if there is wind.
 pub fn scale_wind(description: &mut Description, factor: f64) {
     if let Some(wind) = &mut description.wind {
-        let means = [
-            &mut wind.force,
-            &mut wind.force_per_mass,
-            &mut wind.velocity,
-        ];
+        let means = [&mut wind.force, &mut wind.force_per_mass, &mut wind.velocity];
         for x in means.into_iter().flatten().flatten() {
             *x *= factor;
         }
@@ -73,11 +69,8 @@ pub fn begin_with(description: &mut Description, model: &Model, now: &Checkpoint
     let mut parts = now.run.y.chunks_exact(3 * n);
     let network = model.network();
     let bodies = 0..network.map_or(0, |network| network.bodies().len());
-    let rotations = || {
-        network
-            .into_iter()
-            .flat_map(|it| bodies.clone().map(|k| it.rotation(k, &now.run.y)))
-    };
+    let rotations =
+        || network.into_iter().flat_map(|it| bodies.clone().map(|k| it.rotation(k, &now.run.y)));
     description.state = Some(State {
         positions: parts.next().map(rows).unwrap_or_default(),
         velocities: parts.next().map(rows).unwrap_or_default(),
@@ -179,12 +172,7 @@ fn write_obstacles(description: &mut Description, network: &Network, t: f64) {
             }
             Shape::Floor => {
                 let (height, thickness) = (here.y, Some(obstacle.thickness).filter(|d| *d > 0.0));
-                let floor = FloorSpec {
-                    height,
-                    friction,
-                    restitution,
-                    thickness,
-                };
+                let floor = FloorSpec { height, friction, restitution, thickness };
                 let is_plain = [friction, restitution, obstacle.thickness] == [0.0; 3];
                 let plain = Floor::Height(height);
                 description.floor = Some(if is_plain { plain } else { Floor::Table(floor) });
@@ -220,12 +208,7 @@ fn pins(now: &Checkpoint) -> Vec<Pin> {
         all.filter(|pin| !is_drained(pin))
     };
     let held = held.filter(|held| holding().all(|pin| pin.particle != held.particle));
-    for Held {
-        particle,
-        path,
-        until,
-    } in holding().copied().chain(held)
-    {
+    for Held { particle, path, until } in holding().copied().chain(held) {
         let grabbed = now.run.grabbed.filter(|it| it.particle == particle);
         let Motion { sine, shift, about } = match grabbed {
             None => motion(&path, t),
@@ -236,23 +219,14 @@ fn pins(now: &Checkpoint) -> Vec<Pin> {
             Path::Turn { turn, .. } if about.is_some() => going_on(turn, about, t),
             _ => None,
         };
-        let pin = Pin {
-            sine,
-            shift,
-            turn,
-            until: until.map(|until| until - t),
-            ..Pin::default()
-        };
+        let pin = Pin { sine, shift, turn, until: until.map(|until| until - t), ..Pin::default() };
         let alike = |other: &&mut Pin| {
             (&other.sine, &other.shift, &other.turn, other.until)
                 == (&pin.sine, &pin.shift, &pin.turn, pin.until)
         };
         match pins.iter_mut().find(alike) {
             Some(pin) => pin.particles.push(particle),
-            None => pins.push(Pin {
-                particles: vec![particle],
-                ..pin
-            }),
+            None => pins.push(Pin { particles: vec![particle], ..pin }),
         }
     }
     pins
@@ -270,12 +244,7 @@ struct Motion {
 /// Returns the motion that continues a path from time t (s).
 fn motion(path: &Path, t: f64) -> Motion {
     match *path {
-        Path::Sine {
-            center,
-            amplitude,
-            rate,
-            phase,
-        } => Motion {
+        Path::Sine { center, amplitude, rate, phase } => Motion {
             sine: Some(Sine {
                 amplitude: amplitude.into(),
                 rate,
@@ -293,24 +262,10 @@ fn motion(path: &Path, t: f64) -> Motion {
             ..Motion::default()
         },
         Path::Still(_) | Path::Line { .. } => Motion::default(),
-        Path::Turn {
-            from,
-            to,
-            start,
-            end,
-            ..
-        } => {
-            let axis = Path::Line {
-                from,
-                to,
-                start,
-                end,
-            };
+        Path::Turn { from, to, start, end, .. } => {
+            let axis = Path::Line { from, to, start, end };
             let about = Some(axis.at(t).position.into());
-            Motion {
-                about,
-                ..motion(&axis, t)
-            }
+            Motion { about, ..motion(&axis, t) }
         }
     }
 }

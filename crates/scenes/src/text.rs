@@ -60,11 +60,7 @@ pub(crate) struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     pub fn new(text: &'a [u8]) -> Self {
-        Self {
-            text,
-            next: 0,
-            read: 0,
-        }
+        Self { text, next: 0, read: 0 }
     }
 
     /// Returns the next statement without its comment, which begins with `#`, and the number of its

@@ -34,10 +34,9 @@ impl Address {
                 _ => address.words.push(word),
             }
         }
-        if let (Some([first, ..]), false) = (
-            address.scenes.as_deref(),
-            address.words.iter().any(|word| word == "--scene"),
-        ) {
+        if let (Some([first, ..]), false) =
+            (address.scenes.as_deref(), address.words.iter().any(|word| word == "--scene"))
+        {
             address.words.extend(["--scene".into(), first.clone()]);
         }
         Ok(address)

@@ -191,22 +191,13 @@ mod tests {
         // Advance the run, move the camera, and tune the scene.
         frames(&mut session, 0.3);
         session.view.camera.orbit(0.3, 0.1);
-        panel::tune(
-            &mut session,
-            &[("gravity".into(), 5.0), ("stiffness".into(), 1.5)],
-        )
-        .unwrap();
+        panel::tune(&mut session, &[("gravity".into(), 5.0), ("stiffness".into(), 1.5)]).unwrap();
         let line = of(&session, 0).ok().unwrap();
         assert!(line.contains("/a3-flag-1.toml --colour speed"), "{line}");
         let made = reopen(&line);
         assert_eq!(made.runs.first().state(), session.runs.first().state());
         assert_eq!(made.runs.first().control(), session.runs.first().control());
-        let gravity = made
-            .runs
-            .first()
-            .model()
-            .network()
-            .and_then(a3_core::Network::gravity);
+        let gravity = made.runs.first().model().network().and_then(a3_core::Network::gravity);
         assert_eq!(gravity.unwrap().y, -5.0);
         assert!((made.view.camera.eye() - session.view.camera.eye()).norm() < 1e-4);
         // The file and its options then express the whole state, without another file.

@@ -81,21 +81,14 @@ mod tests {
         assert_eq!(path, folder.path().join("a3-flag-1.checkpoint"));
         let mut second = session(&words[2..]);
         second.readings.in_window = true;
-        load(&mut second, &path)
-            .map_err(|failure| failure.to_string())
-            .unwrap();
+        load(&mut second, &path).map_err(|failure| failure.to_string()).unwrap();
         assert_eq!(panel::tuned(&first), panel::tuned(&second));
         for session in [&mut first, &mut second] {
             frames(session, 0.5);
         }
         let seen = |session: &Session| {
             let run = session.runs.first();
-            (
-                run.time(),
-                run.method().name,
-                run.windy(),
-                run.state().to_vec(),
-            )
+            (run.time(), run.method().name, run.windy(), run.state().to_vec())
         };
         assert!(seen(&first) == seen(&second));
         // Parts that are left out are saved too, also obstacles.
@@ -107,9 +100,7 @@ mod tests {
         panel::tune(&mut third, &parts.clone().map(|part| (part, 1.0))).unwrap();
         frames(&mut third, 0.3);
         let reduced = save(&third, 0).ok().unwrap();
-        load(&mut fourth, &reduced)
-            .map_err(|failure| failure.to_string())
-            .unwrap();
+        load(&mut fourth, &reduced).map_err(|failure| failure.to_string()).unwrap();
         assert_eq!(fourth.readings.left_out, ["gravity", "sphere"]);
         for session in [&mut third, &mut fourth] {
             frames(session, 0.3);
@@ -118,9 +109,7 @@ mod tests {
         // Loading an untuned run resets the tuning.
         let words = ["r", "0.002", "--scene", scene.to_str().unwrap()];
         let plain = save(&session(&words), 0).ok().unwrap();
-        load(&mut second, &plain)
-            .map_err(|failure| failure.to_string())
-            .unwrap();
+        load(&mut second, &plain).map_err(|failure| failure.to_string()).unwrap();
         assert_eq!(panel::tuned(&second), []);
         assert_eq!(second.runs.first().time(), 0.0);
         let mut other = session(&["r", "0.01"]);
@@ -138,10 +127,7 @@ mod tests {
         let mut first = session(&words);
         frames(&mut first, 0.2);
         let plain = save(&first, 0).ok().unwrap();
-        let add = a3_scenes::Edit::AddParticle {
-            position: [0.0, 3.0, 1.0],
-            mass: 0.1,
-        };
+        let add = a3_scenes::Edit::AddParticle { position: [0.0, 3.0, 1.0], mass: 0.1 };
         panel::edit(&mut first, &add, "particle").unwrap();
         frames(&mut first, 0.1);
         let edited = save(&first, 0).ok().unwrap();

@@ -11,10 +11,7 @@
     clippy::return_self_not_must_use
 )]
 // Functions that cannot fail on a page have the signatures of the native ones, which can.
-#![cfg_attr(
-    target_arch = "wasm32",
-    allow(clippy::unused_self, clippy::unnecessary_wraps)
-)]
+#![cfg_attr(target_arch = "wasm32", allow(clippy::unused_self, clippy::unnecessary_wraps))]
 
 pub mod address;
 mod app;

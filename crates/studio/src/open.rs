@@ -21,11 +21,7 @@ pub fn open(opening: &Opening, answerer: Answerer) -> Result<(), Failure> {
     let mut session = begin::session(opening)?;
     session.measuring.answerer = Some(answerer);
     // The scene, its meshes and their buffers.
-    let files: Vec<PathBuf> = if opening.watch {
-        output::files_read()
-    } else {
-        vec![]
-    };
+    let files: Vec<PathBuf> = if opening.watch { output::files_read() } else { vec![] };
     if let Some(path) = &opening.resume {
         keep::load(&mut session, path)?;
     }
@@ -50,9 +46,7 @@ const SIMULATED_SECONDS: u32 = 10;
 /// Warns that there is no window because of `why`, then simulates and draws without one. Fails if
 /// the run blows up or a file cannot be written.
 fn run_headless(why: &str, mut session: Session) -> Result<(), Failure> {
-    terminal::warn(&format!(
-        "{why}: simulating {SIMULATED_SECONDS} seconds without a window."
-    ));
+    terminal::warn(&format!("{why}: simulating {SIMULATED_SECONDS} seconds without a window."));
     if let Some(said) = &session.readings.message {
         terminal::warn(said);
     }
@@ -77,22 +71,14 @@ fn run_headless(why: &str, mut session: Session) -> Result<(), Failure> {
 
 /// Simulates, and prints a line for each simulated second.
 fn simulate(pane: &mut Pane) -> Result<(), Failure> {
-    let Pane {
-        simulation, show, ..
-    } = pane;
+    let Pane { simulation, show, .. } = pane;
     terminal::say("  time [s]   energy [J]   lowest [m]   stretch\n")?;
     terminal::say(&line(simulation))?;
     for second in 1..=SIMULATED_SECONDS {
         progress::advance(simulation, f64::from(second), |simulation| {
             show.follow(simulation);
         })
-        .and_then(|()| {
-            if second == SIMULATED_SECONDS {
-                simulation.conclude()
-            } else {
-                Ok(())
-            }
-        })
+        .and_then(|()| if second == SIMULATED_SECONDS { simulation.conclude() } else { Ok(()) })
         .map_err(|error| verdict::lost(simulation, &error, "", f64::from(SIMULATED_SECONDS)))?;
         terminal::say(&line(simulation))?;
     }

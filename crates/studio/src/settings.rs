@@ -17,10 +17,7 @@ pub const SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0];
 /// The settings that do not belong to a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each is a setting of its own"
-)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a setting of its own")]
 pub struct Settings {
     /// Scale factor of text and panel, on top of the screen's own.
     pub interface_scale: f32,
@@ -71,9 +68,7 @@ impl Settings {
             return Ok(Self::default());
         };
         let read: Self = toml::from_str(&text).map_err(|why| {
-            let line = why
-                .span()
-                .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+            let line = why.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
             format!("{place}:{line}: this is not a setting of a3")
         })?;
         let [least, .., most] = SCALES.map(f64::from);
@@ -130,11 +125,7 @@ mod tests {
         let files = ["/b.toml", "/a.toml", "/b.toml"].map(PathBuf::from);
         settings.remember(files.into_iter());
         settings.remember(std::iter::once(PathBuf::from("/c.toml")));
-        let names: Vec<_> = settings
-            .recent
-            .iter()
-            .map(|p| p.to_str().unwrap())
-            .collect();
+        let names: Vec<_> = settings.recent.iter().map(|p| p.to_str().unwrap()).collect();
         assert_eq!(names, ["/c.toml", "/b.toml", "/a.toml"]);
         assert!(settings.write_to(&path).is_ok());
         assert_eq!(Settings::read_from(&path), Ok(settings));
@@ -169,10 +160,7 @@ mod tests {
         for (text, line) in [
             ("panel = true\nscale = 2\n", ":2: "),
             ("panel = 3\n", ":1: "),
-            (
-                "interface_scale = 1e9\n",
-                ": interface_scale must be from 0.75 to 2",
-            ),
+            ("interface_scale = 1e9\n", ": interface_scale must be from 0.75 to 2"),
             ("\u{0}", ":1: "),
         ] {
             fs::write(&path, text).unwrap();

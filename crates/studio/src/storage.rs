@@ -24,8 +24,7 @@ pub fn text_of(path: &Path) -> Result<Option<String>, String> {
         Err(why) => return Err(format!("{place}: {}", terminal::reason(&why))),
     }
     let text = fs::read_to_string(path);
-    text.map(Some)
-        .map_err(|why| format!("{place}: {}", terminal::reason(&why)))
+    text.map(Some).map_err(|why| format!("{place}: {}", terminal::reason(&why)))
 }
 
 /// Writes a file, and creates its folder if need be. Fails if that is not possible.
@@ -39,11 +38,7 @@ pub fn store(path: &Path, text: &str) -> Result<(), Failure> {
 
 /// Returns the path of the settings file.
 pub fn file() -> PathBuf {
-    let named = |name| {
-        env::var_os(name)
-            .map(PathBuf::from)
-            .filter(|path| path.is_absolute())
-    };
+    let named = |name| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let home = |below: &str| env::home_dir().map(|home| home.join(below));
     let folder = if cfg!(windows) {
         named("APPDATA")

@@ -16,10 +16,7 @@ const MAX_QUOTED_CHARS: usize = 80;
 
 /// Prints help and version as clap does, and returns any mistake of the arguments in one line.
 pub fn explain(error: &clap::Error, args: &[OsString]) -> Result<(), Failure> {
-    if matches!(
-        error.kind(),
-        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
-    ) {
+    if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
         return terminal::check_write(error.print());
     }
     Err(Failure::Usage(mistake(error, args)))
@@ -42,11 +39,7 @@ fn mistake(error: &clap::Error, args: &[OsString]) -> String {
             format!("{typed}: {why}")
         }
         ErrorKind::InvalidValue if value.is_empty() => {
-            let needed = format!(
-                "{} needs a value: {}",
-                quoted(option),
-                without_brackets(&arg)
-            );
+            let needed = format!("{} needs a value: {}", quoted(option), without_brackets(&arg));
             if choices.is_empty() {
                 needed
             } else {

@@ -41,11 +41,7 @@ impl SceneArgs {
     pub fn options(&self) -> SceneOptions {
         SceneOptions {
             grid: self.grid,
-            on: Disturbances {
-                wind: self.wind,
-                swing: self.swing,
-                contact: self.self_collision,
-            },
+            on: Disturbances { wind: self.wind, swing: self.swing, contact: self.self_collision },
         }
     }
 
@@ -83,10 +79,7 @@ pub struct StepOptions {
 impl StepOptions {
     /// Returns the limits that were given.
     pub fn given(&self) -> StepLimits {
-        StepLimits {
-            absolute: self.absolute,
-            max_step: self.max_step,
-        }
+        StepLimits { absolute: self.absolute, max_step: self.max_step }
     }
 }
 
@@ -119,10 +112,8 @@ impl RunOptions {
     pub fn prepare(&self, own: Option<&'static Method>) -> Result<Run, Failure> {
         let request = self.what.request()?;
         if let Some(solver) = self.solver.filter(|solver| !solver.is_adaptive()) {
-            let given = [
-                (self.limits.absolute, "--absolute"),
-                (self.limits.max_step, "--max-step"),
-            ];
+            let given =
+                [(self.limits.absolute, "--absolute"), (self.limits.max_step, "--max-step")];
             if let Some((_, option)) = given.iter().find(|(value, _)| value.is_some()) {
                 return Err(Failure::usage(format!(
                     "{} takes a step, not a tolerance: leave out {option}",
@@ -148,12 +139,7 @@ impl RunOptions {
                 "step {step} s: a longer one, such as the default {usual} s, would not hold"
             ));
         }
-        Ok(Run {
-            request,
-            simulation,
-            presentation: setup.presentation,
-            until,
-        })
+        Ok(Run { request, simulation, presentation: setup.presentation, until })
     }
 }
 
@@ -192,10 +178,7 @@ pub struct ErrorScope {
 impl ErrorScope {
     /// Returns the particle and the times that were given.
     pub fn given(&self) -> Scope {
-        Scope {
-            particle: self.particle,
-            at_end: self.at_end,
-        }
+        Scope { particle: self.particle, at_end: self.at_end }
     }
 }
 

@@ -94,9 +94,7 @@ impl Only {
             };
         }
         let ids = text.split(',').map(|id| Id::parse(id.trim()));
-        ids.collect::<Option<_>>()
-            .map(Self::Ids)
-            .ok_or_else(|| right.into())
+        ids.collect::<Option<_>>().map(Self::Ids).ok_or_else(|| right.into())
     }
 
     /// Returns the indices of the selected runs among the ids of all runs.
@@ -128,17 +126,7 @@ mod tests {
         assert_eq!(Only::parse("3/12"), Ok(Only::Share(3, 12)));
         let id = Id::parse("00ff00ff00ff00ff").unwrap();
         assert_eq!(Only::parse("00ff00ff00ff00ff"), Ok(Only::Ids(vec![id])));
-        for wrong in [
-            "0/3",
-            "4/3",
-            "1/0",
-            "1/",
-            "-1/2",
-            "1",
-            "a,b",
-            "",
-            "00ff00ff00ff00ff,",
-        ] {
+        for wrong in ["0/3", "4/3", "1/0", "1/", "-1/2", "1", "a,b", "", "00ff00ff00ff00ff,"] {
             assert!(Only::parse(wrong).is_err(), "{wrong}");
         }
     }

@@ -14,11 +14,7 @@ use a3_files::bounds::{Allowed, BUDGETS, ERRORS, FACTORS, HORIZONS};
 
 /// Reads the end of a run (s).
 pub fn until(text: &str) -> Result<f64, String> {
-    within(
-        text,
-        0.0..=1e9,
-        "the end is a number of seconds from 0 to 1e9, such as 10",
-    )
+    within(text, 0.0..=1e9, "the end is a number of seconds from 0 to 1e9, such as 10")
 }
 
 /// Reads the real time between two checkpoints (s).
@@ -33,20 +29,12 @@ pub fn pause(text: &str) -> Result<f64, String> {
 /// Reads the beginning of a film (s).
 #[cfg(feature = "window")]
 pub fn beginning(text: &str) -> Result<f64, String> {
-    within(
-        text,
-        0.0..=1e9,
-        "a film begins at a number of seconds from 0 to 1e9, such as 2.5",
-    )
+    within(text, 0.0..=1e9, "a film begins at a number of seconds from 0 to 1e9, such as 2.5")
 }
 
 /// Reads a number of frames per second.
 pub fn rate(text: &str) -> Result<f64, String> {
-    within(
-        text,
-        0.1..=1e6,
-        "a rate is a number of frames per second from 0.1 to 1e6, such as 30",
-    )
+    within(text, 0.1..=1e6, "a rate is a number of frames per second from 0.1 to 1e6, such as 30")
 }
 
 /// Reads a number of those that an option may have.
@@ -136,39 +124,27 @@ impl<T: Clone + Send + Sync + 'static> TypedValueParser for Names<T> {
 }
 
 /// A solver by its letter or its name.
-pub const SOLVER: Names<&'static Method> = Names {
-    parse: |text, _| solver(text),
-    all: solvers,
-};
+pub const SOLVER: Names<&'static Method> = Names { parse: |text, _| solver(text), all: solvers };
 
 /// A solver, or `None` for the word "all".
-pub const SOLVER_OR_ALL: Names<Option<&'static Method>> = Names {
-    parse: |text, _| solver_or_all(text),
-    all: || [vec![ALL], solvers()].concat(),
-};
+pub const SOLVER_OR_ALL: Names<Option<&'static Method>> =
+    Names { parse: |text, _| solver_or_all(text), all: || [vec![ALL], solvers()].concat() };
 
 /// A solver in a place where a command may also stand.
 #[cfg(feature = "window")]
-pub const SOLVER_OR_COMMAND: Names<&'static Method> = Names {
-    parse: solver_or_command,
-    all: solvers,
-};
+pub const SOLVER_OR_COMMAND: Names<&'static Method> =
+    Names { parse: solver_or_command, all: solvers };
 
 /// A solver, and its step or tolerance after a colon.
 #[cfg(feature = "window")]
-pub const SOLVER_AND_STEP: Names<(&'static Method, Option<f64>)> = Names {
-    parse: |text, _| solver_and_step(text),
-    all: solvers,
-};
+pub const SOLVER_AND_STEP: Names<(&'static Method, Option<f64>)> =
+    Names { parse: |text, _| solver_and_step(text), all: solvers };
 
 /// Word for all solvers.
 const ALL: &str = "all";
 
 /// The name of a scene, or of its file.
-pub const SCENE: Names<String> = Names {
-    parse: |text, _| Ok(text.to_owned()),
-    all: scenes,
-};
+pub const SCENE: Names<String> = Names { parse: |text, _| Ok(text.to_owned()), all: scenes };
 
 /// Creates a parser of one of some values, each with its name and its help.
 pub fn choice<T: Copy + Send + Sync + 'static>(
@@ -203,16 +179,12 @@ fn solver_or_command(text: &str, cli: &Command) -> Result<&'static Method, Strin
         return Ok(method);
     }
     if scenes().contains(&text) || [".toml", ".json"].iter().any(|end| text.ends_with(end)) {
-        return Err(format!(
-            "a scene comes after --scene, as in `a3 --scene {text}`"
-        ));
+        return Err(format!("a scene comes after --scene, as in `a3 --scene {text}`"));
     }
     let commands = cli.get_subcommands().map(Command::get_name);
     let commands: Vec<_> = commands.filter(|name| *name != "help").collect();
     if commands.contains(&text) {
-        return Err(format!(
-            "a command comes before its options, as in `a3 {text} --scene flag`"
-        ));
+        return Err(format!("a command comes before its options, as in `a3 {text} --scene flag`"));
     }
     Err(match nearest_of(text, &commands) {
         Some(name) => format!(

@@ -95,14 +95,12 @@ impl Look {
 }
 
 #[derive(Args)]
-#[command(
-    after_help = "Outputs:\n  FILE.png       the picture at the time --until\n  \
+#[command(after_help = "Outputs:\n  FILE.png       the picture at the time --until\n  \
     FILE.gif       a film that loops, 25 frames per second by default\n  \
     FILE.mp4       a film as H.264, 30 frames per second by default; needs ffmpeg\n  \
     FILE-####.png  a film as pictures, 30 per second by default, numbered with as many digits as there are #\n\n\
     Frames are at exactly T + k / N, from --from to --until; no step is shortened for them. A\n\
-    film that blows up or is interrupted keeps the frames until then."
-)]
+    film that blows up or is interrupted keeps the frames until then.")]
 pub struct Render {
     #[command(flatten)]
     pub run: RunOptions,
@@ -161,9 +159,7 @@ impl Compare {
         limit_threads(self.what.threads);
         let methods = self.methods.iter();
         Ok(Opening {
-            methods: methods
-                .map(|(method, step)| (Some(*method), *step))
-                .collect(),
+            methods: methods.map(|(method, step)| (Some(*method), *step)).collect(),
             ..self.look.opening(&self.what, &self.limits)
         })
     }

@@ -24,19 +24,13 @@ pub fn answer(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failure> {
 }
 
 fn of_chart(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failure> {
-    let options = ChartOptions {
-        timed: task.timed,
-        ..ChartOptions::default()
-    };
+    let options = ChartOptions { timed: task.timed, ..ChartOptions::default() };
     let chart = chart(&task.request.scene()?, &[], &options, monitor)?;
     let (report, diagram) = chart.best();
     let runs = chart.runs_in(&diagram);
     Ok(Answer {
         report,
-        diagram: Some(Diagram {
-            chart: diagram,
-            runs,
-        }),
+        diagram: Some(Diagram { chart: diagram, runs }),
         complete: chart.is_complete(),
         ..Answer::default()
     })
@@ -44,29 +38,17 @@ fn of_chart(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failure> {
 
 fn of_stability(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failure> {
     let found = stability(&task.request.scene()?, &[], monitor)?;
-    Ok(Answer {
-        report: found.reasons(),
-        complete: found.complete,
-        ..Answer::default()
-    })
+    Ok(Answer { report: found.reasons(), complete: found.complete, ..Answer::default() })
 }
 
 fn of_choice(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failure> {
     let scene = task.request.scene()?;
     let goal = Goal::Error(task.error);
-    let options = ChooseOptions {
-        timed: task.timed,
-        ..ChooseOptions::new(goal)
-    };
+    let options = ChooseOptions { timed: task.timed, ..ChooseOptions::new(goal) };
     let choice = choose::choose(&scene, &[], &options, monitor)?;
     let offers = choice.found.iter().map(|it| (it.method, it.control));
     Ok(Answer {
-        report: choose::report(
-            task.request.options.on,
-            &scene,
-            (goal, Scope::default()),
-            &choice,
-        ),
+        report: choose::report(task.request.options.on, &scene, (goal, Scope::default()), &choice),
         offers: offers.collect(),
         complete: true,
         ..Answer::default()
@@ -123,10 +105,7 @@ mod tests {
             }
         }
         // Classical Runge-Kutta has order 4.
-        let rk4 = curves
-            .iter()
-            .zip(&runs)
-            .find(|(_, runs)| runs[0].0.name == "rk4");
+        let rk4 = curves.iter().zip(&runs).find(|(_, runs)| runs[0].0.name == "rk4");
         let (curve, runs) = rk4.unwrap();
         let last = runs.len() - 1;
         let order = (curve.runs[last - 2].error / curve.runs[last].error).ln()
@@ -144,30 +123,22 @@ mod tests {
         let choice = choose::choose(&scene, &[], &options, &()).unwrap();
         let best = choice.best();
         assert_eq!(found.offers[0], (best.method, best.control));
-        let head = format!(
-            "chain for {} s, an error of 1e-3 m (all particles):\n",
-            choice.until
-        );
+        let head = format!("chain for {} s, an error of 1e-3 m (all particles):\n", choice.until);
         assert_eq!((found.report.head, unit(Metric::Position)), (head, "m"));
         assert_eq!(found.report.rows.len(), found.offers.len() + 1);
 
         let found = answered(Question::Simplify, &words);
         let Report { head, rows, foot } = found.report;
         assert!(head.starts_with("chain for ") && head.contains("an error of 1e-3 m"));
-        assert!(
-            rows.iter()
-                .any(|row| row[0] == "gravity" && row[4] == "needed")
-        );
+        assert!(rows.iter().any(|row| row[0] == "gravity" && row[4] == "needed"));
         assert!(found.complete && foot.contains("nothing can be left out") == found.lean.is_none());
     }
 
     /// Euler's explicit method fails first by a motion at rest.
     #[test]
     fn limits_have_their_reasons() {
-        let found = answered(
-            Question::Stability,
-            &["t", "0.01", "--scene", "cloth", "--grid", "5x5"],
-        );
+        let found =
+            answered(Question::Stability, &["t", "0.01", "--scene", "cloth", "--grid", "5x5"]);
         let rows = &found.report.rows;
         assert_eq!(rows[0].len(), 4);
         assert!(rows.len() > 15 && found.complete);
@@ -175,10 +146,6 @@ mod tests {
         let stable = |name: &str| row(name)[1].trim_start_matches('>').parse::<f64>();
         assert!(stable("euler").unwrap() < stable("rk4").unwrap());
         assert!(rows[1..].iter().all(|row| !row[3].is_empty()));
-        assert!(
-            row("euler")[3].ends_with("grows at rest"),
-            "{:?}",
-            row("euler")
-        );
+        assert!(row("euler")[3].ends_with("grows at rest"), "{:?}", row("euler"));
     }
 }

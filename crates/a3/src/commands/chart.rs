@@ -46,11 +46,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         let (of, data) = ((chart.frames(), scope), options.data.as_deref());
         picture::print_grid_error(&request, &scene, of, data, None)?;
     }
-    let diagram = if options.solvers.is_empty() {
-        chart.best_picture()
-    } else {
-        chart.picture()
-    };
+    let diagram = if options.solvers.is_empty() { chart.best_picture() } else { chart.picture() };
     let (width, height) = options.size;
     let figure = diagram.draw(f64::from(width), f64::from(height));
     let figure = figure.map_err(|why| {

@@ -189,10 +189,8 @@ fn verdict(options: &Judge, judged: &[(String, Judgement)], refused: usize) -> R
     Err(Failure::run(match &missed[..] {
         [] => return Ok(()),
         [(name, judgement)] => format!("{name}: {}", too_large(judgement, within)),
-        several => format!(
-            "{} of {} files err by more than {within:e} m",
-            several.len(),
-            judged.len()
-        ),
+        several => {
+            format!("{} of {} files err by more than {within:e} m", several.len(), judged.len())
+        }
     }))
 }

@@ -33,9 +33,7 @@ pub fn scenes(options: &Scenes) -> Result<(), Failure> {
         let summary = entry.description().ok().and_then(|it| it.summary);
         rows.push(vec![
             entry.name.into(),
-            grid.map_or("-".into(), |grid| {
-                format!("{}x{}", grid.rows(), grid.cols())
-            }),
+            grid.map_or("-".into(), |grid| format!("{}x{}", grid.rows(), grid.cols())),
             scene.model.particles().to_string(),
             network.map_or(0, |n| n.springs().count()).to_string(),
             scene.model.system().dim().to_string(),
@@ -52,18 +50,12 @@ fn materials() -> String {
     let mut solids = headings("solid| kg/m3| Young Pa| Poisson| loss|what it is");
     for material in &MATERIALS {
         let (rows, numbers) = match material.stuff {
-            Stuff::Fabric {
-                density,
-                stretch,
-                shear,
-                bending,
-            } => (&mut fabrics, [density, stretch, shear, bending]),
-            Stuff::Matter {
-                density,
-                young,
-                poisson,
-                loss,
-            } => (&mut solids, [density, young, poisson, loss]),
+            Stuff::Fabric { density, stretch, shear, bending } => {
+                (&mut fabrics, [density, stretch, shear, bending])
+            }
+            Stuff::Matter { density, young, poisson, loss } => {
+                (&mut solids, [density, young, poisson, loss])
+            }
         };
         let numbers = numbers.iter().map(|number| Rounded(*number).to_string());
         let name = std::iter::once(material.name.to_owned());

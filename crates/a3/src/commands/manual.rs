@@ -29,10 +29,7 @@ pub fn run(folder: Option<&Path>) -> Result<(), Failure> {
         return say(page);
     };
     if !folder.is_dir() {
-        return Err(Failure::run(format!(
-            "there is no folder {}",
-            folder.display()
-        )));
+        return Err(Failure::run(format!("there is no folder {}", folder.display())));
     }
     for command in [&command].into_iter().chain(command.get_subcommands()) {
         let (man, mut page) = (Man::new(command.clone()), vec![]);

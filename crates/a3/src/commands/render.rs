@@ -18,12 +18,7 @@ const ENDINGS: &[&str] = &["png", "gif", "mp4"];
 pub fn run(options: &Render) -> Result<(), Failure> {
     let (path, size) = (&options.output, options.size);
     output::check_ending(path, ENDINGS)?;
-    let Run {
-        request,
-        mut simulation,
-        mut presentation,
-        until,
-    } = options.run.prepare(None)?;
+    let Run { request, mut simulation, mut presentation, until } = options.run.prepare(None)?;
     let manner = options.manner.of(options.springs_of);
     check_particle(&simulation, manner.springs_of)?;
     check_drawing(&simulation, manner, false)?;

@@ -97,11 +97,7 @@ fn check_folder(path: &Path, request: &Request) -> Result<(), Failure> {
     if !has_files || folder(path) == own {
         return Ok(());
     }
-    let own = if own.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        &own
-    };
+    let own = if own.as_os_str().is_empty() { Path::new(".") } else { &own };
     Err(Failure::usage(format!(
         "{}: the scene has meshes in files beside it: write the lean scene to the folder {}",
         path.display(),

@@ -58,9 +58,9 @@ fn check_summary(options: &Simulate) -> Result<(), Failure> {
     let stdout = Path::new("-");
     match options.summary.as_deref() {
         Some(path) if path != stdout => output::check(path, &["json"]),
-        Some(_) if options.output == stdout => Err(Failure::usage(
-            "standard output can take either --output or --summary, not both",
-        )),
+        Some(_) if options.output == stdout => {
+            Err(Failure::usage("standard output can take either --output or --summary, not both"))
+        }
         _ => Ok(()),
     }
 }
@@ -237,16 +237,12 @@ fn resume(
         (asked.what.self_collision, run.touching(), "self-collision"),
     ] {
         if asked && !there {
-            return refuse(format!(
-                "this run continues without {option}: leave out --{option}"
-            ));
+            return refuse(format!("this run continues without {option}: leave out --{option}"));
         }
     }
     let (now, end) = (run.time(), begun.until);
     if now > end {
-        return refuse(format!(
-            "this run is at t = {now} s already, past --until {end}"
-        ));
+        return refuse(format!("this run is at t = {now} s already, past --until {end}"));
     }
     Ok(())
 }
@@ -343,9 +339,7 @@ pub fn write(
     let fluid = fluid.filter(|fluid| !fluid.members().outflows().is_empty());
     let unmet = simulation.worst_constraint();
     let unmet = unmet.filter(|unmet| unmet.share > MIN_REPORTED_ERROR);
-    let guarded = network
-        .and_then(Network::contact_layer)
-        .map(|_| simulation.guarded());
+    let guarded = network.and_then(Network::contact_layer).map(|_| simulation.guarded());
     let summary = Summary {
         scene: simulation.scene().name.clone(),
         solver: simulation.method().name,

@@ -19,15 +19,9 @@ fn a_chart_of_evaluations_has_the_same_bits_every_time() {
     let [a, drawn_a, b, drawn_b] = files.map(|file| fs::read(file).unwrap());
     assert!(a == b);
     assert!(drawn_a == drawn_b);
-    for said in [
-        "small differences",
-        "1e-2 m",
-        "1e-8 m",
-        "* cheapest:",
-        "chart: a.svg",
-        "rk4",
-        "dop853",
-    ] {
+    for said in
+        ["small differences", "1e-2 m", "1e-8 m", "* cheapest:", "chart: a.svg", "rk4", "dop853"]
+    {
         assert!(first.contains(said), "{said} in\n{first}");
     }
     let svg = String::from_utf8(drawn_a).unwrap();
@@ -94,13 +88,11 @@ fn a_chart_goes_on_from_its_data() {
     for line in reader.records() {
         let line = line.unwrap();
         let is_verlet = line.iter().any(|cell| cell == "verlet");
-        let cells = line.iter().zip(&headers).take(count).map(|(cell, name)| {
-            if is_verlet && name == "work" {
-                "0.125"
-            } else {
-                cell
-            }
-        });
+        let cells = line
+            .iter()
+            .zip(&headers)
+            .take(count)
+            .map(|(cell, name)| if is_verlet && name == "work" { "0.125" } else { cell });
         writer.write_record(cells).unwrap();
     }
     writer.flush().unwrap();
@@ -124,17 +116,12 @@ fn an_interrupted_chart_draws_what_it_has() {
         assert!(child.try_wait().unwrap().is_none(), "it ended before");
         std::thread::sleep(Duration::from_millis(5));
     }
-    let interrupt = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
+    let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(interrupt.unwrap().success());
     let output = child.wait_with_output().unwrap();
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(130), "{stderr}");
-    assert!(
-        stderr.contains("interrupted: the chart has what was measured"),
-        "{stderr}"
-    );
+    assert!(stderr.contains("interrupted: the chart has what was measured"), "{stderr}");
     assert!(folder.join("i.svg").exists());
     let partial = fs::read_to_string(&data).unwrap();
     said(folder, &interrupted);
@@ -150,10 +137,7 @@ fn stiffness_makes_panels_and_other_errors_count() {
     let words =
         "--stiffness 1,100 --solvers v,r --error energy --until 0.5 -o p.png --size 800x500";
     let text = said(folder, format!("{CHAIN} {words}"));
-    assert!(
-        text.contains("stiffness x 100") && text.contains("1e-4 J"),
-        "{text}"
-    );
+    assert!(text.contains("stiffness x 100") && text.contains("1e-4 J"), "{text}");
     let picture = image::open(folder.join("p.png")).unwrap();
     assert_eq!((picture.width(), picture.height()), (800, 500));
 }
@@ -167,10 +151,7 @@ fn seconds_are_measured() {
     assert!(folder.join("a3-chart-simple.svg").exists());
     let runs: serde_json::Value = folder.json("s.json");
     let runs = runs.as_array().unwrap();
-    assert!(
-        runs.iter()
-            .any(|run| run["seconds"].as_f64().is_some_and(|s| s > 0.0))
-    );
+    assert!(runs.iter().any(|run| run["seconds"].as_f64().is_some_and(|s| s > 0.0)));
     for run in runs {
         assert!(run["seconds"].is_number() || run["lost_at"].is_number());
     }
@@ -182,10 +163,7 @@ fn a_long_horizon_is_warned_of() {
     let words = "chart --scene double-pendulum --until 8 --solvers r --work evaluations";
     let output = a3(folder, words);
     let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        stderr.contains("warning: ") && stderr.contains("Lyapunov time"),
-        "{stderr}"
-    );
+    assert!(stderr.contains("warning: ") && stderr.contains("Lyapunov time"), "{stderr}");
 }
 
 #[test]
@@ -203,44 +181,20 @@ fn wrong_usage_is_one_line() {
         ("chart --until 0", "such as 1", 2),
         ("chart --until nan", "such as 1", 2),
         ("chart --error speed", "position", 2),
-        (
-            "chart --error energy --scene simple",
-            "ask for position or phase",
-            2,
-        ),
-        (
-            "choose --error 1e-3 --of strain --scene simple",
-            "ask for position or phase",
-            2,
-        ),
-        (
-            "chart --error impact --scene chain",
-            "no surfaces touch in the scene chain",
-            2,
-        ),
+        ("chart --error energy --scene simple", "ask for position or phase", 2),
+        ("choose --error 1e-3 --of strain --scene simple", "ask for position or phase", 2),
+        ("chart --error impact --scene chain", "no surfaces touch in the scene chain", 2),
         (
             "choose --error 1e-3 --of impact --until 0.1 --scene bounce.toml",
             "no impact begins or ends in 0.1 s",
             2,
         ),
-        (
-            "chart --particle 4 --scene chain",
-            "its particles are 0 to 3",
-            2,
-        ),
+        ("chart --particle 4 --scene chain", "its particles are 0 to 3", 2),
         ("chart --work joules", "evaluations", 2),
         ("chart --output x.gif", ".svg, .pdf or .png", 2),
         ("chart --data x.txt", ".csv or .json", 2),
-        (
-            "chart --data bad.csv",
-            "does not hold the data of a chart",
-            2,
-        ),
-        (
-            "chart --data bad.json",
-            "does not hold the data of a chart",
-            2,
-        ),
+        ("chart --data bad.csv", "does not hold the data of a chart", 2),
+        ("chart --data bad.json", "does not hold the data of a chart", 2),
         ("chart --output no/x.svg", "there is no folder no", 1),
         ("chart --size 10x10", "320x240", 2),
         ("chart --solvers v --scene simple", "needs forces", 2),
@@ -258,10 +212,7 @@ fn wrong_usage_is_one_line() {
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(code), "{words:?}: {stderr}");
         assert_eq!(stderr.lines().count(), 1, "{words:?}: {stderr}");
-        assert!(
-            stderr.starts_with("error: ") && stderr.contains(right),
-            "{words:?}: {stderr}"
-        );
+        assert!(stderr.starts_with("error: ") && stderr.contains(right), "{words:?}: {stderr}");
     }
     assert_eq!(folder.count(), 3);
 }
@@ -272,10 +223,7 @@ fn wrong_usage_is_one_line() {
 fn a_chart_opens_in_the_viewer() {
     let folder = &Folder::new();
     let viewer = folder.join("xdg-open");
-    folder.write(
-        "xdg-open",
-        "#!/bin/sh\n/bin/cp \"$1\" shown.tmp && /bin/mv shown.tmp shown\n",
-    );
+    folder.write("xdg-open", "#!/bin/sh\n/bin/cp \"$1\" shown.tmp && /bin/mv shown.tmp shown\n");
     let runs = std::os::unix::fs::PermissionsExt::from_mode(0o700);
     fs::set_permissions(&viewer, runs).unwrap();
     let shown = folder.join("shown");
@@ -299,10 +247,7 @@ fn a_chart_opens_in_the_viewer() {
         assert!(said.contains(&format!("chart: {file}")), "{said}{why}");
         let begun = std::time::Instant::now();
         while !shown.exists() {
-            assert!(
-                begun.elapsed() < Duration::from_secs(20),
-                "{words:?}: {why}"
-            );
+            assert!(begun.elapsed() < Duration::from_secs(20), "{words:?}: {why}");
             std::thread::sleep(Duration::from_millis(10));
         }
         let picture = folder.bytes(file);

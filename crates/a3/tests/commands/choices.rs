@@ -55,10 +55,7 @@ fn limits_of_a_solver_do_not_depend_on_the_others() {
     let pefrl = |solvers: &str| -> serde_json::Value {
         let words = "stability --scene box.toml -o s.svg --data s.json --solvers";
         let text = said(folder, format!("{words} {solvers}"));
-        assert!(
-            !text.contains(" 0\u{2013}") && !text.contains("ratio -"),
-            "{text}"
-        );
+        assert!(!text.contains(" 0\u{2013}") && !text.contains("ratio -"), "{text}");
         let rows = folder.read("s.json");
         let rows: Vec<serde_json::Value> = serde_json::from_str(&rows).unwrap();
         let row = rows.into_iter().find(|row| row["solver"] == "pefrl");
@@ -66,10 +63,7 @@ fn limits_of_a_solver_do_not_depend_on_the_others() {
     };
     let alone = pefrl("p");
     assert_eq!(alone, pefrl("e,t,r,s,v,p,h"));
-    let [by_modes, seen] = [
-        &alone["rest_tenfold"],
-        &alone["rest_observed"]["longest_held"],
-    ];
+    let [by_modes, seen] = [&alone["rest_tenfold"], &alone["rest_observed"]["longest_held"]];
     let ratio = seen.as_f64().unwrap() / by_modes.as_f64().unwrap();
     assert!((0.97..1.03).contains(&ratio), "{alone}");
 }
@@ -82,10 +76,7 @@ fn the_feedback_of_constraints_is_no_motion() {
     let text = said(folder, words);
     let head = text.lines().next().unwrap();
     assert!(!head.contains("damping ratio 1.000"), "{head}");
-    assert!(
-        head.ends_with("; errors of constraints decay at 10.0 / s"),
-        "{head}"
-    );
+    assert!(head.ends_with("; errors of constraints decay at 10.0 / s"), "{head}");
     // A rod that falls from its upright place, in drag.
     let scene = "gravity = [0, -9.81, 0]
         drag = 0.3
@@ -123,18 +114,12 @@ fn a_choice_comes_with_its_command() {
     for word in ["best", "runner-up", "an error of 1e-4 m", "time/frame"] {
         assert!(text.contains(word), "{word} in\n{text}");
     }
-    let line = text
-        .lines()
-        .find_map(|line| line.strip_prefix("run it:  a3 "))
-        .unwrap();
+    let line = text.lines().find_map(|line| line.strip_prefix("run it:  a3 ")).unwrap();
     assert!(line.contains("--scene chain"), "{line}");
     // The same arguments, without a window.
     said(folder, format!("simulate {line} --until 1 --output c.json"));
     let text = said(folder, "choose --budget 5 --scene simple --until 2");
-    assert!(
-        text.contains("5 ms per frame") && text.contains("run it:  a3 "),
-        "{text}"
-    );
+    assert!(text.contains("5 ms per frame") && text.contains("run it:  a3 "), "{text}");
 }
 
 /// A rod falls from its upright place: differences grow 10-fold in 10 s, which is not hardly.
@@ -164,8 +149,5 @@ fn growth_is_told_by_its_size() {
         "{falls}"
     );
     let hangs = note("0.09");
-    assert!(
-        hangs.contains("small differences hardly grow by themselves"),
-        "{hangs}"
-    );
+    assert!(hangs.contains("small differences hardly grow by themselves"), "{hangs}");
 }

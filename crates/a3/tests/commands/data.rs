@@ -37,10 +37,7 @@ fn orders_particles_and_spread_are_in_the_data() {
             .filter(|row| row["solver"] == run["solver"] && row["setting"] == run["setting"]);
         let (mut sum, mut count) = (0.0, 0.0);
         for row in own {
-            sum += ["x", "y", "z"]
-                .map(|axis| number(row, axis).powi(2))
-                .iter()
-                .sum::<f64>();
+            sum += ["x", "y", "z"].map(|axis| number(row, axis).powi(2)).iter().sum::<f64>();
             count += 1.0;
         }
         if run["lost_at"].is_empty() {

@@ -18,12 +18,7 @@ fn every_exit_code_is_in_the_manual_and_is_used() {
     let section = section.split(".SH").next().unwrap();
     let listed: Vec<i32> = section
         .lines()
-        .filter_map(|line| {
-            line.strip_prefix("\\fB")?
-                .strip_suffix("\\fR")?
-                .parse()
-                .ok()
-        })
+        .filter_map(|line| line.strip_prefix("\\fB")?.strip_suffix("\\fR")?.parse().ok())
         .collect();
     // Signals have tests of their own.
     assert_eq!(listed, [0, 1, 2, 129, 130, 143]);
@@ -48,10 +43,7 @@ fn every_exit_code_is_in_the_manual_and_is_used() {
         (1, "simulate r --until 1 -o nowhere/x.json"),
         (1, "render --scene simple --until 1 -o x.png"),
         (2, "simulate r 0.01 --until 1 -o x.json --scene bad.toml"),
-        (
-            2,
-            "simulate r 0.01 --until 1 -o x.json --scene nowhere.toml",
-        ),
+        (2, "simulate r 0.01 --until 1 -o x.json --scene nowhere.toml"),
         (2, "simulate r 0.01 --until 1 -o x.json --grid 1x1"),
         (2, "simulate r 0.01 --until 1 -o x.json --summary x.json"),
         (2, "chart --data bad.csv"),
@@ -116,16 +108,11 @@ fn nothing_from_a_file_or_a_name_moves_the_cursor() {
 #[test]
 fn a_full_standard_error_does_not_change_the_exit_code() {
     let folder = &Folder::new();
-    for (words, code) in [
-        ("fly", 2),
-        ("simulate --until 1 -o nowhere/x.json", 1),
-        ("r 0.01 --scene simple", 0),
-    ] {
+    for (words, code) in
+        [("fly", 2), ("simulate --until 1 -o nowhere/x.json", 1), ("r 0.01 --scene simple", 0)]
+    {
         let full = fs::File::options().write(true).open("/dev/full").unwrap();
-        let status = command(folder, words)
-            .stdout(Stdio::null())
-            .stderr(full)
-            .status();
+        let status = command(folder, words).stdout(Stdio::null()).stderr(full).status();
         assert_eq!(status.unwrap().code(), Some(code), "{words:?}");
     }
 }

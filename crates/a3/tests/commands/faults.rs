@@ -43,31 +43,19 @@ fn fail_everywhere(words: &str, files: &[&str], least: usize) {
     if gpu_is_missing(&output) {
         return;
     }
-    assert!(
-        output.status.success(),
-        "{words:?}: {}",
-        text(&output.stderr)
-    );
+    assert!(output.status.success(), "{words:?}: {}", text(&output.stderr));
     let whole = contents(folder);
     for fault in 1.. {
         let folder = &fresh();
-        let output = command(folder, words)
-            .env("A3_FAULT", fault.to_string())
-            .output()
-            .unwrap();
+        let output = command(folder, words).env("A3_FAULT", fault.to_string()).output().unwrap();
         let there = contents(folder);
         for (name, bytes) in &there {
             let old = files.contains(&&**name) && bytes == OLD;
-            let new = whole
-                .get(name)
-                .is_some_and(|whole| is_whole(name, bytes, whole));
+            let new = whole.get(name).is_some_and(|whole| is_whole(name, bytes, whole));
             assert!(old || new, "{words:?}, fault {fault}: {name}");
         }
         for name in files {
-            assert!(
-                there.contains_key(*name),
-                "{words:?}, fault {fault}: {name}"
-            );
+            assert!(there.contains_key(*name), "{words:?}, fault {fault}: {name}");
         }
         if output.status.success() {
             assert!(fault > least, "{words:?} fails only {} times", fault - 1);
@@ -77,13 +65,8 @@ fn fail_everywhere(words: &str, files: &[&str], least: usize) {
         let stderr = text(&output.stderr).replace("error: ./", "error: ");
         assert_eq!(output.status.code(), Some(1), "{words:?}: {stderr}");
         assert_eq!(stderr.lines().count(), 1, "{words:?}: {stderr}");
-        let names_place = whole
-            .keys()
-            .any(|name| stderr.contains(&format!("error: {name}: ")));
-        assert!(
-            names_place || stderr.contains("error: standard output "),
-            "{words:?}: {stderr}"
-        );
+        let names_place = whole.keys().any(|name| stderr.contains(&format!("error: {name}: ")));
+        assert!(names_place || stderr.contains("error: standard output "), "{words:?}: {stderr}");
         assert!(stderr.contains("no storage space"), "{words:?}: {stderr}");
     }
 }
@@ -126,11 +109,7 @@ fn charts_and_manuals_survive_every_fault() {
     let run = "chart --scene simple --work evaluations --until 0.1 --solvers r";
     fail_everywhere(&format!("{run} -o x.svg --data d.csv"), &["x.svg"], 12);
     fail_everywhere(&format!("{run} -o x.png --data d.json"), &["x.png"], 12);
-    fail_everywhere(
-        "stability --scene simple --solvers r -o x.svg",
-        &["x.svg"],
-        7,
-    );
+    fail_everywhere("stability --scene simple --solvers r -o x.svg", &["x.svg"], 7);
     fail_everywhere("man --output .", &["a3.1", "a3-man.1"], 50);
 }
 
@@ -139,10 +118,7 @@ fn charts_and_manuals_survive_every_fault() {
 fn no_fault_is_asked_for_by_chance() {
     let folder = &Folder::new();
     let words = "simulate --scene simple --until 1 -o -";
-    let output = command(folder, words)
-        .env("A3_FAULT", "1")
-        .output()
-        .unwrap();
+    let output = command(folder, words).env("A3_FAULT", "1").output().unwrap();
     assert!(complaint(&output, 1).contains("standard output"));
     let output = command(folder, words).env("A3_FAULT", "").output().unwrap();
     assert!(output.status.success());

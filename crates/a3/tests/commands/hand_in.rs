@@ -24,12 +24,7 @@ fn repository(folder: &Path) {
 }
 
 fn hand_in(from: &Path, script: &Path, program: &Path, words: &[&str]) -> Output {
-    Command::new(script)
-        .args(words)
-        .current_dir(from)
-        .env("A3_BINARY", program)
-        .output()
-        .unwrap()
+    Command::new(script).args(words).current_dir(from).env("A3_BINARY", program).output().unwrap()
 }
 
 #[test]
@@ -70,10 +65,7 @@ fn the_archive_has_the_sources_the_program_and_the_readme() {
     let sources = asked(folder, "git", "ls-files");
     assert!(sources.lines().count() > 100 && sources.contains("crates/core/src/lib.rs"));
     for source in sources.lines() {
-        let [here, there] = [
-            folder.bytes(source),
-            fs::read(unpacked.join(source)).unwrap(),
-        ];
+        let [here, there] = [folder.bytes(source), fs::read(unpacked.join(source)).unwrap()];
         assert!(here == there, "{source}");
     }
     let state = asked(&unpacked, "./a3", "simulate t 0.01 --until 0.1 --output -");
@@ -83,16 +75,9 @@ fn the_archive_has_the_sources_the_program_and_the_readme() {
     // Uncommitted changes are refused, because the archive would lack them.
     folder.write("crates/core/src/new.rs", "");
     let line = complaint(&hand_in(folder, &script, &program, &[]), 1);
-    assert!(
-        line.starts_with("error: ") && line.contains("crates/core/src/new.rs"),
-        "{line}"
-    );
+    assert!(line.starts_with("error: ") && line.contains("crates/core/src/new.rs"), "{line}");
     assert!(!folder.join("a3-handin.tar.gz").exists());
-    for words in [
-        &["a.tar.gz", "b.tar.gz"][..],
-        &["--help"],
-        &["nowhere/a.tar.gz"],
-    ] {
+    for words in [&["a.tar.gz", "b.tar.gz"][..], &["--help"], &["nowhere/a.tar.gz"]] {
         let line = complaint(&hand_in(folder, &script, &program, words), 1);
         assert!(line.starts_with("error: "), "{line}");
     }

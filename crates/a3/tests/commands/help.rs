@@ -44,53 +44,31 @@ fn lists() {
             .map(str::to_owned);
         row.unwrap_or_else(|| panic!("no {name} in\n{stdout}"))
     };
-    for number in [
-        "15x15", "225", "1202", "1350", "gravity", "drag", "sphere", "floor",
-    ] {
+    for number in ["15x15", "225", "1202", "1350", "gravity", "drag", "sphere", "floor"] {
         assert!(row("mit-sphere").contains(number), "{number}");
     }
     assert!(row("simple").contains(" 3 "));
     let solvers = a3(folder, "solvers");
     for solver in a3_core::integrators::METHODS {
         let start = format!("{}  {} ", solver.letter.unwrap(), solver.name);
-        assert!(
-            text(&solvers.stdout)
-                .lines()
-                .any(|line| line.starts_with(&start)),
-            "{start}"
-        );
+        assert!(text(&solvers.stdout).lines().any(|line| line.starts_with(&start)), "{start}");
     }
 }
 
 #[test]
 fn a_closed_or_full_output_is_no_panic() {
     let folder = &Folder::new();
-    for words in [
-        "scenes",
-        "t 0.01 --scene pendulum",
-        "solvers",
-        "--help",
-        "chart --help",
-    ] {
-        let mut child = command(folder, words)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+    for words in ["scenes", "t 0.01 --scene pendulum", "solvers", "--help", "chart --help"] {
+        let mut child =
+            command(folder, words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
         let output = child.wait_with_output().unwrap();
-        assert!(
-            output.status.success() && !text(&output.stderr).contains("panicked"),
-            "{words:?}"
-        );
+        assert!(output.status.success() && !text(&output.stderr).contains("panicked"), "{words:?}");
         #[cfg(target_os = "linux")]
         {
             let full = fs::File::options().write(true).open("/dev/full").unwrap();
-            let output = command(folder, words)
-                .stdout(full)
-                .stderr(Stdio::piped())
-                .spawn()
-                .unwrap();
+            let output =
+                command(folder, words).stdout(full).stderr(Stdio::piped()).spawn().unwrap();
             let output = output.wait_with_output().unwrap();
             assert_eq!(output.status.code(), Some(1), "{words:?}");
             assert!(text(&output.stderr).contains("standard output"));

@@ -39,11 +39,7 @@ fn follow(name: &str, page: &str) {
                     if gpu_is_missing(&output) {
                         return;
                     }
-                    assert_eq!(
-                        output.status.code(),
-                        code.parse().ok(),
-                        "{name}: {line}: {stderr}"
-                    );
+                    assert_eq!(output.status.code(), code.parse().ok(), "{name}: {line}: {stderr}");
                     said += text(&output.stdout);
                     said += stderr;
                     let makes = |word: &&&str| !["--output", "--chart"].contains(*word);
@@ -56,10 +52,7 @@ fn follow(name: &str, page: &str) {
             }
             "text" => {
                 for line in block.lines() {
-                    assert!(
-                        said.contains(line),
-                        "{name}: not said:\n{line}\nbut\n{said}"
-                    );
+                    assert!(said.contains(line), "{name}: not said:\n{line}\nbut\n{said}");
                 }
             }
             _ => panic!("{name}: a block of {language}"),
@@ -73,10 +66,7 @@ fn follow(name: &str, page: &str) {
         assert!(Path::new(LESSONS).join("pictures").join(file).is_file());
     }
     assert!(page.contains("**Question.**") && page.contains("<summary>Answer</summary>"));
-    assert!(
-        !pictures.is_empty() && page.lines().count() <= 150,
-        "{name}"
-    );
+    assert!(!pictures.is_empty() && page.lines().count() <= 150, "{name}");
 }
 
 #[test]
@@ -86,10 +76,7 @@ fn the_lessons_are_true() {
     let names: Vec<_> = links.map(|link| link.split(')').next().unwrap()).collect();
     assert_eq!(names.len(), COUNT);
     for name in names {
-        follow(
-            name,
-            &fs::read_to_string(Path::new(LESSONS).join(name)).unwrap(),
-        );
+        follow(name, &fs::read_to_string(Path::new(LESSONS).join(name)).unwrap());
     }
 }
 
@@ -107,10 +94,7 @@ fn a_lesson_is_printed() {
     let said = |words: &str| text(&a3(folder, words).stdout).to_owned();
     let (asked, told) = (said("lessons 2"), said("lessons 2 --answers"));
     assert!(asked.contains("Answer: a3 lessons 2 --answers") && !asked.contains("Yes: 56 ms"));
-    assert!(
-        told.contains("Yes: 56 ms") && !told.contains("--answers"),
-        "{told}"
-    );
+    assert!(told.contains("Yes: 56 ms") && !told.contains("--answers"), "{told}");
     let line = refused(folder, "lessons 9", 2);
     assert!(line.contains("`9`: lessons are numbered 1 to 8"), "{line}");
 }

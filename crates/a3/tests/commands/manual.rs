@@ -78,10 +78,7 @@ fn the_manual_has_every_command_and_is_set_without_a_warning() {
     let manual = said(folder, "man");
     assert_eq!(manual.matches(".TH ").count(), 1);
     for command in COMMANDS {
-        assert!(
-            manual.contains(&format!("\n.SH \"a3 {command}\"\n")),
-            "{command}"
-        );
+        assert!(manual.contains(&format!("\n.SH \"a3 {command}\"\n")), "{command}");
     }
     if is_missing("groff") {
         return;
@@ -95,13 +92,7 @@ fn the_manual_has_every_command_and_is_set_without_a_warning() {
     assert!(output.status.success());
     assert_eq!(text(&output.stderr), "");
     let page = text(&output.stdout);
-    for part in [
-        "NAME",
-        "FILE-####.obj",
-        "--transparent",
-        "FILE.mp4",
-        "--budget",
-    ] {
+    for part in ["NAME", "FILE-####.obj", "--transparent", "FILE.mp4", "--budget"] {
         assert!(page.contains(part), "{part}");
     }
 }

@@ -44,20 +44,14 @@ fn no_output_overwrites_an_input_or_another_output() {
     fs::write(path("notes.json"), "[]").unwrap();
     let before = contents(folder);
     let sheet = |output: &str| format!("simulate --scene sheet.toml --output {output}");
-    let (reads, two, no_chart) = (
-        "reads this file",
-        "two outputs",
-        "does not hold the data of a chart",
-    );
+    let (reads, two, no_chart) =
+        ("reads this file", "two outputs", "does not hold the data of a chart");
     for (words, says) in [
         (sheet("sheet.pc2"), reads),
         (sheet("./sheet.obj"), reads),
         (sheet("hard.obj"), reads),
         (sheet("soft.obj"), reads),
-        (
-            "simulate --scene frames.toml -o frame-####.obj".into(),
-            reads,
-        ),
+        ("simulate --scene frames.toml -o frame-####.obj".into(), reads),
         ("simulate --scene list.json -o list.json".into(), reads),
         (sheet("a.json --summary a.json"), two),
         (sheet("link.json --summary new.json"), two),
@@ -73,14 +67,8 @@ fn no_output_overwrites_an_input_or_another_output() {
     fs::remove_file(path("frame-0003.obj")).unwrap();
     symlink("sheet.obj", path("frame-0003.obj")).unwrap();
     let line = complaint(&a3(folder, sheet("frame-####.obj --until 0.2")), 2);
-    assert!(
-        line.contains("frame-0003.obj") && line.contains(reads),
-        "{line}"
-    );
-    assert_eq!(
-        fs::read(path("sheet.obj")).unwrap(),
-        fs::read(path("hard.obj")).unwrap()
-    );
+    assert!(line.contains("frame-0003.obj") && line.contains(reads), "{line}");
+    assert_eq!(fs::read(path("sheet.obj")).unwrap(), fs::read(path("hard.obj")).unwrap());
     // A path that only looks similar is written.
     for output in ["sheet.json", "sheet.glb", "other-####.obj"] {
         succeed(folder, sheet(output) + " --until 0");
@@ -98,24 +86,14 @@ fn a_protected_file_stays_and_a_link_is_followed() {
     fs::write(path("old.json"), "old").unwrap();
     fs::set_permissions(path("old.json"), fs::Permissions::from_mode(0o444)).unwrap();
     let line = complaint(&run("old.json"), 1);
-    assert!(
-        line.contains("old.json: ") && line.contains("protected"),
-        "{line}"
-    );
+    assert!(line.contains("old.json: ") && line.contains("protected"), "{line}");
     assert_eq!(fs::read(path("old.json")).unwrap(), b"old");
     symlink("below/new.json", path("link.json")).unwrap();
     let line = complaint(&run("link.json"), 1);
-    assert!(
-        line.contains("link.json: there is no folder below"),
-        "{line}"
-    );
+    assert!(line.contains("link.json: there is no folder below"), "{line}");
     fs::create_dir(path("below")).unwrap();
     assert!(run("link.json").status.success());
-    assert!(
-        fs::symlink_metadata(path("link.json"))
-            .unwrap()
-            .is_symlink()
-    );
+    assert!(fs::symlink_metadata(path("link.json")).unwrap().is_symlink());
     assert!(path("below/new.json").exists());
     symlink("loop.json", path("loop.json")).unwrap();
     assert!(complaint(&run("loop.json"), 1).contains("loop.json: "));
@@ -132,10 +110,7 @@ fn a_scene_reads_nothing_outside_its_folder() {
     fs::rename(scenes.join("sheet.obj"), folder.join("secret.obj")).unwrap();
     symlink("../secret.obj", scenes.join("sheet.obj")).unwrap();
     let line = complaint(&a3(folder, words), 2);
-    assert!(
-        line.contains("`sheet.obj` leads out of the scene's folder"),
-        "{line}"
-    );
+    assert!(line.contains("`sheet.obj` leads out of the scene's folder"), "{line}");
     fs::remove_file(scenes.join("sheet.obj")).unwrap();
     fs::rename(folder.join("secret.obj"), scenes.join("mesh.obj")).unwrap();
     symlink("mesh.obj", scenes.join("sheet.obj")).unwrap();
@@ -155,14 +130,7 @@ fn two_charts_keep_the_runs_of_both() {
         assert!(output.status.success(), "{}", text(&output.stderr));
     }
     let data = folder.read("d.csv");
-    for solver in [
-        "rk4",
-        "verlet",
-        "trapezoid",
-        "euler",
-        "midpoint",
-        "symplectic",
-    ] {
+    for solver in ["rk4", "verlet", "trapezoid", "euler", "midpoint", "symplectic"] {
         assert!(data.contains(&format!(",{solver},")), "{solver}");
     }
     // Nothing is measured again.

@@ -81,20 +81,14 @@ fn methods_side_by_side() {
     // The text: Euler's radius grows by sqrt(1 + h^2) a step, and RK4 is late by h^4 / 120 a
     // second.
     let stdout = text(&output.stdout);
-    let rows: Vec<Vec<&str>> = stdout
-        .lines()
-        .skip(1)
-        .map(|line| line.split_whitespace().collect())
-        .collect();
+    let rows: Vec<Vec<&str>> =
+        stdout.lines().skip(1).map(|line| line.split_whitespace().collect()).collect();
     let error = |row: usize| rows[row][3].parse::<f64>().unwrap();
     assert_eq!(rows.len(), 3, "{stdout}");
     assert!((error(0) - 0.648).abs() < 0.01, "{stdout}");
     assert!((error(1) - 1.04e-6).abs() < 0.02e-6, "{stdout}");
     assert!((error(2) - 6.5e-8).abs() < 0.1e-8, "{stdout}");
-    assert_eq!(
-        (rows[0][4], rows[1][4], rows[2][4]),
-        ("20.0", "80.0", "160")
-    );
+    assert_eq!((rows[0][4], rows[1][4], rows[2][4]), ("20.0", "80.0", "160"));
 
     // The picture: the trails of the second and the third agree, and the first leads elsewhere.
     let picture = image::open(folder.join("x.png")).unwrap().to_rgb8();
@@ -103,9 +97,7 @@ fn methods_side_by_side() {
     let different = |a: u32, b: u32| {
         let (a, b) = (pane(a), pane(b));
         let pairs = a.pixels().zip(b.pixels());
-        pairs
-            .filter(|(p, q)| p.0.iter().zip(q.0).any(|(p, q)| p.abs_diff(q) > 40))
-            .count()
+        pairs.filter(|(p, q)| p.0.iter().zip(q.0).any(|(p, q)| p.abs_diff(q) > 40)).count()
     };
     let (euler, rk4) = (different(0, 1), different(1, 2));
     assert!(euler > 1000 && 4 * rk4 < euler, "{euler} {rk4}");
@@ -137,9 +129,7 @@ fn without_a_display_the_job_is_done_all_the_same() {
     for second in 0..=10 {
         let start = format!("{second}.00");
         assert!(
-            stdout
-                .lines()
-                .any(|line| line.trim_start().starts_with(&start)),
+            stdout.lines().any(|line| line.trim_start().starts_with(&start)),
             "{start} in\n{stdout}"
         );
     }
@@ -157,10 +147,7 @@ fn without_a_display_methods_are_compared_all_the_same() {
     let output = a3(folder, words);
     let (stdout, stderr) = (text(&output.stdout), text(&output.stderr));
     assert!(output.status.success() && stderr.starts_with("no display"));
-    assert!(
-        stdout.contains("euler") && stdout.contains("10.00"),
-        "{stdout}"
-    );
+    assert!(stdout.contains("euler") && stdout.contains("10.00"), "{stdout}");
     if !gpu_is_missing(&output) {
         assert_eq!(stderr.lines().count(), 1, "{stderr}");
         image::open(folder.join("a3-simple-1.png")).unwrap();
@@ -181,10 +168,7 @@ fn without_an_adapter_it_still_simulates() {
     let output = blind("t 0.01");
     let (stdout, stderr) = (text(&output.stdout), text(&output.stderr));
     assert!(output.status.success(), "{stderr}");
-    assert!(
-        stdout.contains("10.00") && stderr.contains("mesa-vulkan-drivers"),
-        "{stdout}{stderr}"
-    );
+    assert!(stdout.contains("10.00") && stderr.contains("mesa-vulkan-drivers"), "{stdout}{stderr}");
     let output = blind("render t 0.01 --until 1 --output x.png");
     assert_eq!(output.status.code(), Some(1));
     assert!(text(&output.stderr).contains("mesa-vulkan-drivers"));

@@ -18,10 +18,7 @@ stiffness = [7, 2]
 /// Scenes with states that other programs computed reach these states.
 #[test]
 fn listed_particles_and_springs_are_a_scene() {
-    let folder = Path::new(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../core/tests/reference"
-    ));
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../core/tests/reference"));
     for name in ["pendulum", "pendulum_drag", "chain", "mit", "cloth_damped"] {
         let file = format!("{name}.json");
         let listed: Value = serde_json::from_slice(&fs::read(folder.join(&file)).unwrap()).unwrap();
@@ -35,15 +32,8 @@ fn listed_particles_and_springs_are_a_scene() {
                 .collect()
         };
         let (ours, theirs) = (rows(&run["positions"]), rows(&state["positions"]));
-        let error = ours
-            .iter()
-            .zip(&theirs)
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max);
-        assert!(
-            ours.len() == theirs.len() && error < 1e-7,
-            "{name}: {error:e}"
-        );
+        let error = ours.iter().zip(&theirs).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(ours.len() == theirs.len() && error < 1e-7, "{name}: {error:e}");
     }
 }
 
@@ -51,15 +41,8 @@ fn listed_particles_and_springs_are_a_scene() {
 #[test]
 fn a_printed_scene_is_the_scene() {
     let folder = &Folder::new();
-    for name in [
-        "cloth",
-        "simple",
-        "mit-sphere",
-        "jelly",
-        "cantilever",
-        "double-pendulum",
-        "flag",
-    ] {
+    for name in ["cloth", "simple", "mit-sphere", "jelly", "cantilever", "double-pendulum", "flag"]
+    {
         let printed = a3(folder, format!("scenes --print {name}"));
         let file = format!("{name}.toml");
         folder.write(&file, &printed.stdout);
@@ -191,18 +174,12 @@ fn what_is_wrong_is_said_with_file_and_line() {
         fs::write(at(name), content).unwrap();
         fs::write(at("scene.toml"), SQUARE.replace("square.obj", name)).unwrap();
         let said = refused("scene.toml");
-        assert!(
-            said.starts_with("error: scene.toml:2: mesh.file: "),
-            "{name}: {said}"
-        );
+        assert!(said.starts_with("error: scene.toml:2: mesh.file: "), "{name}: {said}");
     }
     for name in ["../square.obj", "/etc/passwd", "a/../../b.obj", ""] {
         fs::write(at("scene.toml"), SQUARE.replace("square.obj", name)).unwrap();
         let said = refused("scene.toml");
-        assert!(
-            said.contains("must be in the scene's folder or below it"),
-            "{said}"
-        );
+        assert!(said.contains("must be in the scene's folder or below it"), "{said}");
     }
     fs::write(at("long.toml"), vec![b'#'; 17 << 20]).unwrap();
     assert!(refused("long.toml").contains("long.toml: it is larger than 16 MiB"));
@@ -242,9 +219,8 @@ fn documented_scenes_are_scenes() {
     let docs = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs"));
     let files = fs::read_dir(docs.join("scenes")).unwrap();
     let files = files.map(|entry| entry.unwrap().path());
-    let scenes: Vec<_> = files
-        .filter(|file| file.extension().is_some_and(|e| e == "toml"))
-        .collect();
+    let scenes: Vec<_> =
+        files.filter(|file| file.extension().is_some_and(|e| e == "toml")).collect();
     assert_eq!(scenes.len(), 25);
     for file in scenes {
         let text = fs::read_to_string(&file).unwrap();
@@ -269,17 +245,11 @@ fn a_scene_that_is_pinned_all_over_says_so() {
     let folder = &Folder::new();
     let square = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3 4\n";
     folder.write("square.obj", square);
-    folder.write(
-        "level.toml",
-        format!("{SQUARE}pin = [{{ at = [\"top\"] }}]\n"),
-    );
+    folder.write("level.toml", format!("{SQUARE}pin = [{{ at = [\"top\"] }}]\n"));
     let words = "simulate r 0.01 --scene level.toml --until 0.1 --output -";
     let output = succeed(folder, words);
     let said = text(&output.stderr);
-    assert_eq!(
-        said,
-        "note: all 4 particles of the scene level are pinned\n"
-    );
+    assert_eq!(said, "note: all 4 particles of the scene level are pinned\n");
 }
 
 /// A bead whose velocity has a part across its wire loses that part, and a command that builds the
@@ -296,9 +266,5 @@ fn a_start_that_does_not_fit_is_told_once() {
     let said = text(&output.stderr);
     let note = "note: the velocities at the start do not fit the constraints: impulses changed \
                 them by up to 0.6 m/s";
-    assert_eq!(
-        said.lines().filter(|line| *line == note).count(),
-        1,
-        "{said}"
-    );
+    assert_eq!(said.lines().filter(|line| *line == note).count(), 1, "{said}");
 }

@@ -38,10 +38,7 @@ const EXPORT: &str = "simulate v 0.001 --until 5000 --fps 0.1 --output";
 fn hangups_are_ignored() -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    mask.is_some_and(|mask| {
-        mask.trim()
-            .ends_with(['1', '3', '5', '7', '9', 'b', 'd', 'f'])
-    })
+    mask.is_some_and(|mask| mask.trim().ends_with(['1', '3', '5', '7', '9', 'b', 'd', 'f']))
 }
 
 #[test]

@@ -33,15 +33,8 @@ size = [1, 1, 1]
 "#;
 
 /// Parts of that scene that change nothing.
-const IDLE: [&str; 7] = [
-    "damping of springs",
-    "bend springs",
-    "limit of strain",
-    "friction",
-    "floor",
-    "sphere",
-    "box",
-];
+const IDLE: [&str; 7] =
+    ["damping of springs", "bend springs", "limit of strain", "friction", "floor", "sphere", "box"];
 
 /// The number in the second column of a row of the table.
 fn change(table: &str, row: &str) -> f64 {
@@ -67,8 +60,7 @@ fn effects(file: &Path) -> Vec<(String, f64)> {
     let at = |key: &str| keys.iter().position(|found| found == key).unwrap();
     let (model, change) = (at("model"), at("change"));
     let rows = rows.records().map(Result::unwrap);
-    rows.map(|row| (row[model].to_owned(), row[change].parse().unwrap()))
-        .collect()
+    rows.map(|row| (row[model].to_owned(), row[change].parse().unwrap())).collect()
 }
 
 /// Positions of a final state, particle by particle.
@@ -97,12 +89,8 @@ fn useless_parts_are_found_and_effects_are_those_of_runs_by_hand() {
         let line = table.lines().find(|line| line.starts_with(part)).unwrap();
         assert!(line.ends_with("needed"), "{line}");
     }
-    let run = |scene: &str| {
-        positions(&simulate(
-            folder,
-            format!("rk4 0.0005 --scene {scene} --until 1"),
-        ))
-    };
+    let run =
+        |scene: &str| positions(&simulate(folder, format!("rk4 0.0005 --scene {scene} --until 1")));
     let whole = run("useless.toml");
     let effects = effects(&folder.join("effects.csv"));
     let without = |line: &str, part: &str, by: &str| {
@@ -112,10 +100,7 @@ fn useless_parts_are_found_and_effects_are_those_of_runs_by_hand() {
         let &(_, found) = effects.iter().find(|(model, _)| model == part).unwrap();
         // The accurate runs err by up to 4e-5 m.
         let tolerated = 0.01 * by_hand + 4e-5;
-        assert!(
-            (found - by_hand).abs() < tolerated,
-            "{part}: {found} {by_hand}"
-        );
+        assert!((found - by_hand).abs() < tolerated, "{part}: {found} {by_hand}");
     };
     without("drag = 2e-4", "drag", "");
     without("gravity = [0, -9.81, 0]", "gravity", "");
@@ -143,8 +128,7 @@ fn savings_are_steady() {
         let at = |key: &str| keys.iter().position(|found| found == key).unwrap();
         let (model, time) = (at("model"), at("time"));
         let rows = rows.records().map(Result::unwrap);
-        rows.map(|row| (row[model].to_owned(), row[time].parse().unwrap()))
-            .collect()
+        rows.map(|row| (row[model].to_owned(), row[time].parse().unwrap())).collect()
     };
     let (first, second) = (times("a.csv"), times("b.csv"));
     assert!(first.len() > 10);
@@ -185,12 +169,7 @@ fn the_error_of_a_grid_is_that_of_a_closed_form() {
     let [said, order] = of_grid(&table);
     assert!((said / truth - 1.0).abs() < 0.15, "{said} {truth}\n{table}");
     let chart = folder.read("models.svg");
-    for word in [
-        "Models: hung",
-        "grid of 3 x 3",
-        "grid of 9 x 9",
-        "grid of 17 x 17",
-    ] {
+    for word in ["Models: hung", "grid of 3 x 3", "grid of 9 x 9", "grid of 17 x 17"] {
         assert!(chart.contains(word), "{word}");
     }
     assert!((0.8..1.2).contains(&order), "{order}");
@@ -204,10 +183,7 @@ fn a_large_grid_is_compared_with_a_coarser_one() {
     folder.write("large.toml", scene);
     let words = "choose --scene large.toml --error 1e-6 --until 0.1";
     let found = said(folder, words);
-    assert!(
-        found.contains("the grid of 41 x 41 differs from one half as fine by "),
-        "{found}"
-    );
+    assert!(found.contains("the grid of 41 x 41 differs from one half as fine by "), "{found}");
 }
 
 /// A strip of cloth that hangs between its ends: an elastic catenary. With the weight w of a unit
@@ -277,10 +253,7 @@ fn effects_in_a_file_are_not_measured_again() {
     });
     fs::write(&file, lines.collect::<String>()).unwrap();
     let table = said(folder, words);
-    assert!(
-        change(&table, "drag") == 0.12 || change(&table, "drag") == 0.13,
-        "{drag} {table}"
-    );
+    assert!(change(&table, "drag") == 0.12 || change(&table, "drag") == 0.13, "{drag} {table}");
     // Another quantity and another scope have their own effects.
     for other in ["--of centre", "--at-end"] {
         let table = said(folder, format!("{words} {other}"));
@@ -288,10 +261,7 @@ fn effects_in_a_file_are_not_measured_again() {
     }
     folder.write("effects.csv", "buy,milk\n");
     let said = complaint(&a3(folder, words), 2);
-    assert!(
-        said.contains("does not hold the effects of models"),
-        "{said}"
-    );
+    assert!(said.contains("does not hold the effects of models"), "{said}");
 }
 
 #[test]
@@ -304,24 +274,14 @@ fn quantities_of_their_own_are_compared() {
     folder.write("fall.toml", scene);
     let of = |quantity: &str| {
         let words = "simplify --scene fall.toml --error 1e-4 --until 1";
-        said(
-            folder,
-            format!("{words} --of {quantity} --data {quantity}.csv"),
-        );
+        said(folder, format!("{words} --of {quantity} --data {quantity}.csv"));
         let file = folder.join(format!("{quantity}.csv"));
         let effects = effects(&file);
-        effects
-            .into_iter()
-            .find(|(model, _)| model == "drag")
-            .unwrap()
-            .1
+        effects.into_iter().find(|(model, _)| model == "drag").unwrap().1
     };
     // v = g / d (1 - exp(-d t)), and the distance is its integral.
     let (g, d, mass) = (10.0, 0.5_f64, 0.9);
-    let [v, fallen] = [
-        g / d * (1.0 - (-d).exp()),
-        g / d * (1.0 - (1.0 - (-d).exp()) / d),
-    ];
+    let [v, fallen] = [g / d * (1.0 - (-d).exp()), g / d * (1.0 - (1.0 - (-d).exp()) / d)];
     let centre = of("centre");
     assert!((centre - (0.5 * g - fallen)).abs() < 1e-4, "{centre}");
     let lost = mass * (g * fallen - 0.5 * v * v);
@@ -350,10 +310,7 @@ fn what_cannot_be_simplified_is_refused_in_a_line() {
             "simplify --error 1e-3 --chart models.txt",
             "models.txt: the name of the file must end in .svg, .pdf or .png",
         ),
-        (
-            "simplify --error 1e-3 -o lean.json",
-            "lean.json: the name of the file must end in .toml",
-        ),
+        ("simplify --error 1e-3 -o lean.json", "lean.json: the name of the file must end in .toml"),
         (
             "simplify --scene chain --error 1e-12",
             "the motion of this scene over 10 s is itself known to ",

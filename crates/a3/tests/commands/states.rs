@@ -11,18 +11,12 @@ use serde_json::Value;
 fn the_state_is_written_at_full_precision() {
     let folder = &Folder::new();
     let state = simulate(folder, "rk4 0.3 --scene simple --until 0.9");
-    assert_eq!(
-        (&state["scene"], &state["solver"]),
-        (&"simple".into(), &"rk4".into())
-    );
+    assert_eq!((&state["scene"], &state["solver"]), (&"simple".into(), &"rk4".into()));
     assert_eq!(
         (&state["step"], &state["time"], &state["steps"]),
         (&0.3.into(), &0.9.into(), &3.into())
     );
-    assert_eq!(
-        (&state["evaluations"], &state["energy"]),
-        (&12.into(), &Value::Null)
-    );
+    assert_eq!((&state["evaluations"], &state["energy"]), (&12.into(), &Value::Null));
     // The same, by hand.
     let (mut x, mut y) = (1.0f64, 0.0f64);
     let f = |x: f64, y: f64| (-y, x);
@@ -37,10 +31,7 @@ fn the_state_is_written_at_full_precision() {
     let position = &state["positions"][0];
     assert!((position[0].as_f64().unwrap() - x).abs() < 1e-15);
     assert!((position[1].as_f64().unwrap() - y).abs() < 1e-15);
-    assert_eq!(
-        state["velocities"][0][0].as_f64().unwrap(),
-        -position[1].as_f64().unwrap()
-    );
+    assert_eq!(state["velocities"][0][0].as_f64().unwrap(), -position[1].as_f64().unwrap());
 
     let state = simulate(folder, "t 0.01 --grid 5x7 --until 0.5 --wind --swing");
     assert_eq!(state["positions"].as_array().unwrap().len(), 35);
@@ -111,10 +102,7 @@ fn links_stay_links_and_modes_stay_modes() {
     succeed(folder, words);
     assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
     assert!(fs::read_to_string(&target).unwrap().starts_with('{'));
-    assert_eq!(
-        fs::metadata(&target).unwrap().permissions().mode() & 0o777,
-        0o600
-    );
+    assert_eq!(fs::metadata(&target).unwrap().permissions().mode() & 0o777, 0o600);
 }
 
 #[test]
@@ -127,11 +115,7 @@ fn a_state_file_is_whole_or_absent() {
     assert!(run("state.json").status.success());
     let first = folder.bytes("state.json");
     assert!(run("state.json").status.success());
-    assert_eq!(
-        folder.bytes("state.json"),
-        first,
-        "a run repeats itself to the byte"
-    );
+    assert_eq!(folder.bytes("state.json"), first, "a run repeats itself to the byte");
     assert_eq!(folder.count(), 1);
     let output = run("nowhere/state.json");
     assert_eq!(output.status.code(), Some(1));
@@ -147,11 +131,7 @@ fn a_state_file_is_whole_or_absent() {
         );
         let full = fs::File::options().write(true).open("/dev/full").unwrap();
         let words = "simulate t 0.01 --scene chain --until 1 --output -";
-        let output = command(folder, words)
-            .stdout(full)
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let output = command(folder, words).stdout(full).stderr(Stdio::piped()).spawn().unwrap();
         let output = output.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(1));
         assert!(text(&output.stderr).contains("standard output"));
@@ -185,9 +165,7 @@ fn threads_are_as_many_as_asked_for() {
     let folder = &Folder::new();
     let run = |threads: &str| {
         let words = "simulate r 0.001 --scene mit --grid 80x80 --until 0.2 -o x.json --threads";
-        let mut run = command(folder, format!("{words} {threads}"))
-            .spawn()
-            .unwrap();
+        let mut run = command(folder, format!("{words} {threads}")).spawn().unwrap();
         let tasks = format!("/proc/{}/task", run.id());
         let mut most = 0;
         while run.try_wait().unwrap().is_none() {

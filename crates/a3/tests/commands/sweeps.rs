@@ -69,10 +69,7 @@ fn shares_in_any_order_are_one_run() {
     // The table has a line for each run, with its keys, and the time at which a run blew up.
     let mut table = csv::Reader::from_reader(&whole[0][..]);
     let head = table.headers().unwrap().clone();
-    assert_eq!(
-        head.iter().take(3).collect::<Vec<_>>(),
-        ["id", "chain.mass", "stiffness"]
-    );
+    assert_eq!(head.iter().take(3).collect::<Vec<_>>(), ["id", "chain.mass", "stiffness"]);
     let column = |name: &str| head.iter().position(|h| h == name).unwrap();
     let (solver, lost) = (column("solver"), column("lost_at"));
     let lines: Vec<_> = table.records().map(Result::unwrap).collect();
@@ -90,9 +87,7 @@ fn kills_at_random_moments_lose_nothing() {
     let folder = &begun(SWEEP);
     let mut moment: u64 = 1;
     for _ in 0..20 {
-        moment = moment
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
+        moment = moment.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         let mut child = command(folder, "sweep s.toml").spawn().unwrap();
         sleep(Duration::from_millis(moment >> 58));
         child.kill().unwrap();
@@ -129,15 +124,9 @@ fn a_damaged_run_is_done_again() {
         fs::write(path, wrong).unwrap();
         let output = a3(folder, "sweep s.toml --status");
         let line = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(
-            line.contains("it is damaged") && line.lines().count() == 1,
-            "{line}"
-        );
+        assert!(line.contains("it is damaged") && line.lines().count() == 1, "{line}");
         let told = String::from_utf8_lossy(&output.stdout).into_owned();
-        assert!(
-            told.contains("24 runs, 23 done") && told.contains("1 missing"),
-            "{told}"
-        );
+        assert!(told.contains("24 runs, 23 done") && told.contains("1 missing"), "{told}");
         let line = a3(folder, "sweep s.toml --collect");
         assert_eq!(line.status.code(), Some(1));
         assert!(a3(folder, "sweep s.toml").status.success());
@@ -154,10 +143,7 @@ fn runs_of_other_versions_and_sweeps_are_left_alone() {
     let text = String::from_utf8(all[0].1.clone()).unwrap();
     let version = env!("CARGO_PKG_VERSION");
     let (before, _) = text.trim_end().rsplit_once(',').unwrap();
-    let before = format!(
-        "{},",
-        before.replacen(&format!("\n{version}"), "\n0.0.9", 1)
-    );
+    let before = format!("{},", before.replacen(&format!("\n{version}"), "\n0.0.9", 1));
     let old = format!("{before}{:08x}\n", crc32fast::hash(before.as_bytes()));
     let there = folder.join("a3-sweep-s/0123456789abcdef.csv");
     fs::write(&there, &old).unwrap();
@@ -165,10 +151,7 @@ fn runs_of_other_versions_and_sweeps_are_left_alone() {
         let output = a3(folder, words);
         let line = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.success(), "{line}");
-        assert!(
-            line.contains("1 other runs, of a3 0.0.9") && line.lines().count() == 1,
-            "{line}"
-        );
+        assert!(line.contains("1 other runs, of a3 0.0.9") && line.lines().count() == 1, "{line}");
     }
     assert_eq!(fs::read_to_string(&there).unwrap(), old);
 }
@@ -178,24 +161,12 @@ fn a_sweep_that_cannot_be_is_refused_in_a_line() {
     let base = "scene = \"chain\"\nstep = 0.01\nuntil = 1\n";
     let with = |more: &str| format!("{base}{more}");
     for (sweep, words, why) in [
-        (
-            with("[keys]\nchain.stifness = 3"),
-            "",
-            "did you mean `stiffness`?",
-        ),
-        (
-            with("[keys]\nchain.3.mass = 3"),
-            "",
-            "keys.chain.3.mass: there is no number 3",
-        ),
+        (with("[keys]\nchain.stifness = 3"), "", "did you mean `stiffness`?"),
+        (with("[keys]\nchain.3.mass = 3"), "", "keys.chain.3.mass: there is no number 3"),
         (with("[keys]\nsprings = 3"), "", "springs"),
         (with("[keys]\nchain.mass = -3"), "", "chain.mass"),
         (with("[keys]\nchain.mass = []"), "", "the list is empty"),
-        (
-            with("[keys]\nchain.mass = { from = 1, to = 2 }"),
-            "",
-            "`count`",
-        ),
+        (with("[keys]\nchain.mass = { from = 1, to = 2 }"), "", "`count`"),
         (
             with("[keys]\ndrag = { from = 1, to = 2, count = 1000000 }\nchain.mass = [1, 2]"),
             "",
@@ -203,44 +174,20 @@ fn a_sweep_that_cannot_be_is_refused_in_a_line() {
         ),
         (with("stepp = 3"), "", "did you mean `step`?"),
         (with("solver = \"rk5\""), "", "did you mean rk4?"),
-        (
-            with("solver = \"dopri5\""),
-            "",
-            "the key `tolerance` is missing",
-        ),
+        (with("solver = \"dopri5\""), "", "the key `tolerance` is missing"),
         (with("error = \"speed\""), "", "the choices are position"),
         (with("particle = 9"), "", "has no particle 9"),
         (with("solver = 3"), "", "solver: it must be a name"),
-        (
-            "scene = \"chain\"\nuntil = 1".into(),
-            "",
-            "one of the keys `step` and `tolerance`",
-        ),
-        (
-            "scene = \"chain\"\nstep = 0.01".into(),
-            "",
-            "has no duration: give `until`",
-        ),
-        (
-            "scene = \"chian\"\nstep = 0.01\nuntil = 1".into(),
-            "",
-            "did you mean chain?",
-        ),
+        ("scene = \"chain\"\nuntil = 1".into(), "", "one of the keys `step` and `tolerance`"),
+        ("scene = \"chain\"\nstep = 0.01".into(), "", "has no duration: give `until`"),
+        ("scene = \"chian\"\nstep = 0.01\nuntil = 1".into(), "", "did you mean chain?"),
         (
             "scene = \"simple\"\nsolver = \"verlet\"\nstep = 0.01\nuntil = 1".into(),
             "",
             "the sweep has no runs",
         ),
-        (
-            "scene = \"chain\"\nstep = 20\nuntil = 1".into(),
-            "",
-            "step: each must be a number",
-        ),
-        (
-            "scene = \"chain\"\nstep = 0,5\nuntil = 1".into(),
-            "",
-            "s.toml:2: ",
-        ),
+        ("scene = \"chain\"\nstep = 20\nuntil = 1".into(), "", "step: each must be a number"),
+        ("scene = \"chain\"\nstep = 0,5\nuntil = 1".into(), "", "s.toml:2: "),
         (base.into(), "--only 4/3", "a share is K/N"),
         (base.into(), "--only 0123456789abcdef", "no run of this id"),
         (base.into(), "--plan --status", "not both"),

@@ -29,10 +29,7 @@ fn runs_of_a_sweep_replace_no_end_of_a_link() {
         let link = folder.join(format!("a3-sweep-s/{id}.csv"));
         symlink(target, &link).unwrap();
         let said = complaint(&a3(folder, "sweep s.toml"), 1);
-        assert!(
-            said.contains("it is no ordinary file: take it away"),
-            "{said}"
-        );
+        assert!(said.contains("it is no ordinary file: take it away"), "{said}");
         let letter = folder.read("letter.txt");
         assert!(letter == "dear reader" && !folder.join("gone.txt").exists());
         fs::remove_file(link).unwrap();
@@ -43,10 +40,7 @@ fn runs_of_a_sweep_replace_no_end_of_a_link() {
 #[test]
 fn names_in_a_plan_move_no_cursor() {
     let folder = &Folder::new();
-    folder.write(
-        "c.toml",
-        format!("name = \"a\\u001b[31m\\nb\\tc\"\n{CHAIN}"),
-    );
+    folder.write("c.toml", format!("name = \"a\\u001b[31m\\nb\\tc\"\n{CHAIN}"));
     let sweep = "scene = \"c.toml\"\nsolver = \"rk4\"\nstep = [0.01, 0.02]\nuntil = 0.1\n";
     folder.write("s.toml", sweep);
     let plan = a3(folder, "sweep s.toml --plan");
@@ -65,10 +59,7 @@ fn points_outside_the_folder_are_not_read() {
     symlink(outside.join("secret.node"), folder.join("t.node")).unwrap();
     let words = "simulate --scene t.ele --until 0.1 --output -";
     let said = complaint(&a3(folder, words), 2);
-    assert!(
-        said.contains("`t.node` leads out of the scene's folder by a link"),
-        "{said}"
-    );
+    assert!(said.contains("`t.node` leads out of the scene's folder by a link"), "{said}");
     fs::remove_file(folder.join("t.node")).unwrap();
     folder.write("t.node", node);
     succeed(folder, words);
@@ -78,10 +69,7 @@ fn points_outside_the_folder_are_not_read() {
 #[test]
 fn locked_data_is_waited_for_a_while() {
     let folder = &Folder::new();
-    folder.write(
-        "c.toml",
-        CHAIN.replace("mass", "velocity = [0, 1, 0]\nmass"),
-    );
+    folder.write("c.toml", CHAIN.replace("mass", "velocity = [0, 1, 0]\nmass"));
     let words = "chart --scene c.toml --solvers r --until 0.2 --work evaluations --data c.csv --output c.svg";
     let lock = File::open(folder).unwrap();
     lock.lock().unwrap();
@@ -131,40 +119,20 @@ fn files_that_are_not_read_are_named() {
         );
         assert!(refused(name).contains(&expected), "{}", refused(name));
         assert!(refused(name).contains("scenes are in files that end in .toml or .json"));
-        folder.write(
-            "m.toml",
-            format!("[[obstacle]]\nfile = \"{name}\"\n{CHAIN}"),
-        );
-        assert!(
-            refused("m.toml").contains(&expected),
-            "{}",
-            refused("m.toml")
-        );
+        folder.write("m.toml", format!("[[obstacle]]\nfile = \"{name}\"\n{CHAIN}"));
+        assert!(refused("m.toml").contains(&expected), "{}", refused("m.toml"));
     }
-    folder.write(
-        "wide.toml",
-        CHAIN
-            .encode_utf16()
-            .flat_map(u16::to_le_bytes)
-            .collect::<Vec<_>>(),
-    );
+    folder.write("wide.toml", CHAIN.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<_>>());
     assert!(refused("wide.toml").contains("wide.toml: it is UTF-16 text: save it as UTF-8"));
     let name = std::ffi::OsStr::from_bytes(b"caf\xe9.toml");
     folder.write(name, CHAIN);
-    let output = command(folder, "simulate --until 0.1 --output - --scene")
-        .arg(name)
-        .output()
-        .unwrap();
+    let output =
+        command(folder, "simulate --until 0.1 --output - --scene").arg(name).output().unwrap();
     let said = complaint(&output, 2);
-    assert_eq!(
-        said,
-        "error: `caf\u{fffd}.toml` is not UTF-8: give the file a name in UTF-8"
-    );
-    for written in [
-        format!("\u{feff}{CHAIN}"),
-        CHAIN.replace('\n', "\r\n"),
-        CHAIN.replace('\n', "\r"),
-    ] {
+    assert_eq!(said, "error: `caf\u{fffd}.toml` is not UTF-8: give the file a name in UTF-8");
+    for written in
+        [format!("\u{feff}{CHAIN}"), CHAIN.replace('\n', "\r\n"), CHAIN.replace('\n', "\r")]
+    {
         folder.write("c.toml", written);
         assert!(simulate("c.toml").status.success());
     }
@@ -175,10 +143,7 @@ fn files_that_are_not_read_are_named() {
 fn scenes_come_by_standard_input() {
     let folder = &Folder::new();
     let piped = |scene: &str, words: &str| {
-        let mut child = command(folder, words)
-            .stdin(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut child = command(folder, words).stdin(Stdio::piped()).spawn().unwrap();
         // A program that refuses its command line reads nothing.
         let _ = child.stdin.take().unwrap().write_all(scene.as_bytes());
         child.wait_with_output().unwrap()
@@ -189,16 +154,10 @@ fn scenes_come_by_standard_input() {
         let output = piped(scene, words);
         assert!(output.status.success(), "{}", text(&output.stderr));
         let state: Value = serde_json::from_slice(&output.stdout).unwrap();
-        assert_eq!(
-            (&state["scene"], &state["time"]),
-            (&"input".into(), &0.1.into())
-        );
+        assert_eq!((&state["scene"], &state["time"]), (&"input".into(), &0.1.into()));
     }
     let said = complaint(&piped("[[chian]]\n", words), 2);
-    assert!(
-        said.starts_with("error: standard input:1: chian: there is no key"),
-        "{said}"
-    );
+    assert!(said.starts_with("error: standard input:1: chian: there is no key"), "{said}");
     let said = complaint(&piped(CHAIN, "--scene - --watch"), 2);
     assert!(said.contains("--watch needs a scene file"), "{said}");
 }

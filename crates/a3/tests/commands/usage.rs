@@ -9,14 +9,8 @@ use crate::refused;
 fn limits_of_adaptive_steps_are_for_adaptive_solvers() {
     let folder = &Folder::new();
     for (words, says) in [
-        (
-            "simulate t 0.01 --until 1 --output x.json --absolute 1e-6",
-            "leave out --absolute",
-        ),
-        (
-            "simulate t 0.01 --until 1 --output x.json --max-step 0.1",
-            "leave out --max-step",
-        ),
+        ("simulate t 0.01 --until 1 --output x.json --absolute 1e-6", "leave out --absolute"),
+        ("simulate t 0.01 --until 1 --output x.json --max-step 0.1", "leave out --max-step"),
         ("x 1e-6 --absolute 0", "such as 1e-6"),
         ("x 1e-6 --max-step -1", "such as 0.01"),
     ] {
@@ -62,19 +56,10 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
         ("simulate t 0.01 --until -1 --output x.json", "such as 10"),
         ("simulate t 0.01 --until inf --output x.json", "such as 10"),
         ("simulate t 0.01 --until 1 --output x.txt", ".json"),
-        (
-            "simulate t 0.01 --until 1 --output x.json --grid 3x0",
-            "at least 2x2",
-        ),
+        ("simulate t 0.01 --until 1 --output x.json --grid 3x0", "at least 2x2"),
         ("render t 0.01 --until 1 --output x.jpg", ".png"),
-        (
-            "render t 0.01 --until 1 --output x.png --size 0x5",
-            "1280x720",
-        ),
-        (
-            "render t 0.01 --until 1 --output x.png --springs-of 999",
-            "0 to 399",
-        ),
+        ("render t 0.01 --until 1 --output x.png --size 0x5", "1280x720"),
+        ("render t 0.01 --until 1 --output x.png --springs-of 999", "0 to 399"),
     ] {
         let line = refused(folder, words, 2);
         println!("a3 {words}\n{line}");
@@ -86,26 +71,14 @@ fn wrong_usage_is_one_line_that_says_what_is_right() {
 fn what_a_scene_cannot_show_is_refused() {
     let folder = &Folder::new();
     for (words, says) in [
-        (
-            "t 0.01 --scene simple --colour strain",
-            "has no strain to show: leave out --colour",
-        ),
-        (
-            "compare e t --scene simple --arrows force",
-            "has no force to show: leave out --arrows",
-        ),
+        ("t 0.01 --scene simple --colour strain", "has no strain to show: leave out --colour"),
+        ("compare e t --scene simple --arrows force", "has no force to show: leave out --arrows"),
         (
             "t 0.01 --scene mit --colour contact",
             "nothing can touch in the scene mit: leave out --colour",
         ),
-        (
-            "t 0.01 --colour error",
-            "a3 compare runs: leave out --colour",
-        ),
-        (
-            "t 0.01 --scene cantilever --springs",
-            "has no springs to show: leave out --springs",
-        ),
+        ("t 0.01 --colour error", "a3 compare runs: leave out --colour"),
+        ("t 0.01 --scene cantilever --springs", "has no springs to show: leave out --springs"),
         ("t 0.01 --colour heat", "speed, strain, force"),
     ] {
         let line = refused(folder, words, 2);

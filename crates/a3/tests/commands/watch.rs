@@ -69,25 +69,13 @@ fn contradictions_are_named_without_advice() {
     let both = [TAUT, AGAINST].into_iter();
     for (scene, run) in both.flat_map(|scene| runs.map(|run| (scene, run))) {
         let line = failed(scene, &format!("{run} --until 3"), 1);
-        assert!(
-            line.contains("contradicts other constraints or pins"),
-            "{line}"
-        );
-        assert!(
-            !line.contains("step of") && !line.contains("tolerance"),
-            "{line}"
-        );
+        assert!(line.contains("contradicts other constraints or pins"), "{line}");
+        assert!(!line.contains("step of") && !line.contains("tolerance"), "{line}");
     }
     let (said, _) = told(STRAIGHT, "r 0.001 --until 1");
-    assert!(
-        said.contains("contradict") && said.contains("single place"),
-        "{said}"
-    );
+    assert!(said.contains("contradict") && said.contains("single place"), "{said}");
     let line = failed(HUNG, "r 0.001 --until 1", 2);
-    assert!(
-        line.contains("constraint 0, the point of particle 1, is off by"),
-        "{line}"
-    );
+    assert!(line.contains("constraint 0, the point of particle 1, is off by"), "{line}");
 }
 
 #[test]
@@ -126,11 +114,7 @@ fn heavy_end() -> String {
     };
     let joint = |k: usize| {
         let x = 0.2 * k as f64;
-        let bodies = if k == 0 {
-            "body = 0".into()
-        } else {
-            format!("bodies = [{}, {k}]", k - 1)
-        };
+        let bodies = if k == 0 { "body = 0".into() } else { format!("bodies = [{}, {k}]", k - 1) };
         format!("[[joint]]\n{bodies}\nball = [{x}, 0, 0]\n")
     };
     let ball = "[[body]]\nparts = [{ ball = 0.2 }]\nmass = 1000\nat = [2.2, 0, 0]\n";
@@ -145,16 +129,11 @@ fn advice_says_how_far_it_was_tried() {
     let line = failed(&heavy_end(), "n 0.005 --until 5", 1);
     let (_, advice) = line.split_once("; a step of ").unwrap();
     let (_, advice) = advice.split_once(" s held ").unwrap();
-    let (held, _) = advice
-        .split_once(" s of 5 s, as far as it was tried")
-        .unwrap();
+    let (held, _) = advice.split_once(" s of 5 s, as far as it was tried").unwrap();
     assert!(held.parse::<f64>().unwrap() < 5.0, "{line}");
     // The joints can be met, however a step has torn them.
     let line = failed(&heavy_end(), "i 0.02 --until 5", 1);
-    assert!(
-        !line.contains("contradicts") && line.contains("; a step of "),
-        "{line}"
-    );
+    assert!(!line.contains("contradicts") && line.contains("; a step of "), "{line}");
 }
 
 #[test]

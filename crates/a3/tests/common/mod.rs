@@ -142,11 +142,7 @@ pub fn text(bytes: &[u8]) -> &str {
 /// Runs the program, which must succeed.
 pub fn succeed(folder: &Path, words: impl Words) -> Output {
     let output = a3(folder, &words);
-    assert!(
-        output.status.success(),
-        "{words:?}: {}",
-        text(&output.stderr)
-    );
+    assert!(output.status.success(), "{words:?}: {}", text(&output.stderr));
     output
 }
 
@@ -176,10 +172,7 @@ pub fn complaint(output: &Output, code: i32) -> String {
 
 /// Prints that a test is skipped, or fails if the variable `required` is set.
 pub fn skip(why: &str, required: &str) {
-    assert!(
-        std::env::var_os(required).is_none(),
-        "{required} is set: {why}"
-    );
+    assert!(std::env::var_os(required).is_none(), "{required} is set: {why}");
     // Bypass the test runner, which hides the output of passing tests.
     let _ = writeln!(std::io::stderr(), "SKIPPED, NOT TESTED: {why}");
 }
@@ -204,28 +197,16 @@ pub fn is_missing(program: &str) -> bool {
         .status();
     let missing = found.is_err();
     if missing {
-        skip(
-            &format!("{program} is not installed"),
-            "A3_REQUIRE_CHECKERS",
-        );
+        skip(&format!("{program} is not installed"), "A3_REQUIRE_CHECKERS");
     }
     missing
 }
 
 /// Runs a program that checks files, and returns its output. It must succeed.
 pub fn asked(folder: &Path, program: &str, words: impl Words) -> String {
-    let output = Command::new(program)
-        .args(words.list())
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    let (stdout, stderr) = (
-        String::from_utf8_lossy(&output.stdout),
-        String::from_utf8_lossy(&output.stderr),
-    );
-    assert!(
-        output.status.success(),
-        "{program} {words:?}: {stdout}{stderr}"
-    );
+    let output = Command::new(program).args(words.list()).current_dir(folder).output().unwrap();
+    let (stdout, stderr) =
+        (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{program} {words:?}: {stdout}{stderr}");
     stdout.into_owned()
 }

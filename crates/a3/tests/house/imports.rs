@@ -17,10 +17,8 @@ impl Crate {
     pub fn read(source: &Path, files: &[PathBuf]) -> Self {
         let modules = files.iter().map(|path| {
             let relative = path.strip_prefix(source).unwrap().with_extension("");
-            let mut name: Name = relative
-                .iter()
-                .map(|part| part.to_str().unwrap().to_owned())
-                .collect();
+            let mut name: Name =
+                relative.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
             let last = name.last().map(String::as_str);
             if last == Some("mod") || (name.len() == 1 && matches!(last, Some("lib" | "main"))) {
                 name.pop();
@@ -71,10 +69,8 @@ impl Crate {
                 continue;
             }
             let target = self.resolve(&at, path, depth + 1);
-            let through_glob = name == "*"
-                && target
-                    .as_ref()
-                    .is_some_and(|target| defines(&self.0[target], item));
+            let through_glob =
+                name == "*" && target.as_ref().is_some_and(|target| defines(&self.0[target], item));
             if name == item || through_glob {
                 return target;
             }
@@ -103,9 +99,7 @@ impl Crate {
         let upwards = edges.filter(|(from, to)| {
             !to.is_empty() && from.len() > to.len() && from.starts_with(to) && !is_test(from)
         });
-        upwards
-            .map(|(from, to)| format!("{} uses {}", from.join("::"), to.join("::")))
-            .collect()
+        upwards.map(|(from, to)| format!("{} uses {}", from.join("::"), to.join("::"))).collect()
     }
 
     /// Returns the types with inherent methods in more than two files, with the number of files.
@@ -163,11 +157,7 @@ fn circles_of(graph: &BTreeMap<String, BTreeMap<String, String>>) -> Vec<String>
         while k < ways.len() {
             let way = ways[k].clone();
             k += 1;
-            for next in graph
-                .get(way[way.len() - 1])
-                .into_iter()
-                .flat_map(BTreeMap::keys)
-            {
+            for next in graph.get(way[way.len() - 1]).into_iter().flat_map(BTreeMap::keys) {
                 if next == start {
                     let members: BTreeSet<_> = way.iter().copied().collect();
                     if seen.insert(members) {
@@ -196,13 +186,8 @@ fn circles_of(graph: &BTreeMap<String, BTreeMap<String, String>>) -> Vec<String>
 
 /// Returns the text without comments, strings, and the tests at its end.
 fn code(text: &str) -> String {
-    let text = text
-        .split("#[cfg(test)]\nmod tests {")
-        .next()
-        .unwrap_or_default();
-    let lines = text
-        .lines()
-        .map(|line| line.split("//").next().unwrap_or_default());
+    let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
     lines.collect::<Vec<_>>().join("\n")
 }
 
@@ -302,32 +287,15 @@ fn tree(
 #[test]
 fn circles_are_found() {
     let module = |name: &str, text: &str| {
-        let name: Name = name
-            .split("::")
-            .filter(|part| !part.is_empty())
-            .map(str::to_owned)
-            .collect();
+        let name: Name =
+            name.split("::").filter(|part| !part.is_empty()).map(str::to_owned).collect();
         (name, code(text))
     };
     let of = |modules: &[(&str, &str)]| {
-        Crate::of(
-            modules
-                .iter()
-                .map(|(name, text)| module(name, text))
-                .collect(),
-        )
-        .circles()
+        Crate::of(modules.iter().map(|(name, text)| module(name, text)).collect()).circles()
     };
     let root = ("", "mod a; mod b; mod c; pub use b::{Far, Near as Close};");
-    assert!(
-        of(&[
-            root,
-            ("a", "use crate::{b::Near, c};"),
-            ("b", ""),
-            ("c", "")
-        ])
-        .is_empty()
-    );
+    assert!(of(&[root, ("a", "use crate::{b::Near, c};"), ("b", ""), ("c", "")]).is_empty());
     let three = of(&[
         root,
         ("a", "use crate::Close;"),
@@ -346,10 +314,7 @@ fn circles_are_found() {
         of(&[
             root,
             ("a", "// use crate::b;"),
-            (
-                "b",
-                "use crate::a::y;\n#[cfg(test)]\nmod tests { use crate::b; }"
-            )
+            ("b", "use crate::a::y;\n#[cfg(test)]\nmod tests { use crate::b; }")
         ])
         .is_empty()
     );

@@ -18,11 +18,8 @@ const MAX_COLUMNS: usize = 100;
 
 /// Returns all files below a folder whose names have this ending, in order.
 fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
-    let mut entries: Vec<_> = fs::read_dir(folder)
-        .into_iter()
-        .flatten()
-        .map(|entry| entry.unwrap().path())
-        .collect();
+    let mut entries: Vec<_> =
+        fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()).collect();
     entries.sort();
     let mut found = vec![];
     for path in entries {
@@ -45,10 +42,7 @@ fn rust_files() -> Vec<PathBuf> {
 /// Returns the folder of the sources of each crate.
 fn sources() -> Vec<PathBuf> {
     let crates = fs::read_dir(Path::new(ROOT).join("crates")).unwrap();
-    crates
-        .map(|entry| entry.unwrap().path().join("src"))
-        .filter(|source| source.is_dir())
-        .collect()
+    crates.map(|entry| entry.unwrap().path().join("src")).filter(|source| source.is_dir()).collect()
 }
 
 #[test]
@@ -121,14 +115,8 @@ fn the_map_of_the_architecture_is_the_territory() {
         named.extend(paths.map(|path| PathBuf::from(path.trim_end_matches('/'))));
     }
     let root = Path::new(ROOT).canonicalize().unwrap();
-    let strangers: Vec<_> = named
-        .iter()
-        .filter(|path| !root.join(path).is_dir())
-        .collect();
-    assert!(
-        strangers.is_empty(),
-        "the map names what is not there: {strangers:#?}"
-    );
+    let strangers: Vec<_> = named.iter().filter(|path| !root.join(path).is_dir()).collect();
+    assert!(strangers.is_empty(), "the map names what is not there: {strangers:#?}");
     let mut rooms = BTreeSet::new();
     for source in sources() {
         for path in files(&source.canonicalize().unwrap(), ".rs") {
@@ -139,10 +127,7 @@ fn the_map_of_the_architecture_is_the_territory() {
         }
     }
     let missing: Vec<_> = rooms.difference(&named).collect();
-    assert!(
-        missing.is_empty(),
-        "folders that the map leaves out: {missing:#?}"
-    );
+    assert!(missing.is_empty(), "folders that the map leaves out: {missing:#?}");
 }
 
 #[test]

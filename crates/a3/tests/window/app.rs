@@ -16,12 +16,7 @@ use crate::screen::Screen;
 
 fn first_in_path(folder: &Path) -> OsString {
     let path = env::var_os("PATH").unwrap_or_default();
-    env::join_paths(
-        [folder.to_owned()]
-            .into_iter()
-            .chain(env::split_paths(&path)),
-    )
-    .unwrap()
+    env::join_paths([folder.to_owned()].into_iter().chain(env::split_paths(&path))).unwrap()
 }
 
 /// A running program with its window; killed when dropped.
@@ -74,10 +69,7 @@ impl<'d> App<'d> {
                 break window.to_owned();
             }
             if let Some(status) = child.try_wait().unwrap() {
-                panic!(
-                    "it left before its window opened, {status}: {:?}",
-                    lines.lock().unwrap()
-                );
+                panic!("it left before its window opened, {status}: {:?}", lines.lock().unwrap());
             }
             if begun.elapsed() > MAX_WAIT / 3 {
                 child.kill().unwrap();
@@ -89,13 +81,7 @@ impl<'d> App<'d> {
             sleep(Duration::from_millis(20));
         };
         display.xdotool(["windowactivate", "--sync", &window]);
-        let app = Self {
-            display,
-            child,
-            window,
-            lines,
-            said,
-        };
+        let app = Self { display, child, window, lines, said };
         app.wait("frames", |frames| frames > 2.0);
         Some(app)
     }
@@ -108,24 +94,13 @@ impl<'d> App<'d> {
     /// Returns the last status line, by its keys.
     pub fn status(&self) -> Option<HashMap<String, String>> {
         let lines = self.lines.lock().unwrap();
-        let line = lines
-            .iter()
-            .rev()
-            .find_map(|line| line.strip_prefix("status "))?;
-        let pairs = line
-            .split_whitespace()
-            .filter_map(|word| word.split_once('='));
-        Some(
-            pairs
-                .map(|(key, value)| (key.to_owned(), value.to_owned()))
-                .collect(),
-        )
+        let line = lines.iter().rev().find_map(|line| line.strip_prefix("status "))?;
+        let pairs = line.split_whitespace().filter_map(|word| word.split_once('='));
+        Some(pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect())
     }
 
     pub fn get(&self, key: &str) -> String {
-        self.status()
-            .and_then(|status| status.get(key).cloned())
-            .unwrap_or_default()
+        self.status().and_then(|status| status.get(key).cloned()).unwrap_or_default()
     }
 
     pub fn number(&self, key: &str) -> Option<f64> {
@@ -134,14 +109,9 @@ impl<'d> App<'d> {
 
     /// Returns left and top of the window on the screen (px).
     pub fn corner(&self) -> (i32, i32) {
-        let text = self
-            .display
-            .xdotool(["getwindowgeometry", "--shell", &self.window]);
-        let value = |name| {
-            text.lines()
-                .find_map(|line| line.strip_prefix(name)?.parse().ok())
-                .unwrap()
-        };
+        let text = self.display.xdotool(["getwindowgeometry", "--shell", &self.window]);
+        let value =
+            |name| text.lines().find_map(|line| line.strip_prefix(name)?.parse().ok()).unwrap();
         (value("X="), value("Y="))
     }
 
@@ -205,12 +175,7 @@ impl<'d> App<'d> {
 
     pub fn processor_ticks(&self) -> u64 {
         let text = fs::read_to_string(format!("/proc/{}/stat", self.child.id())).unwrap();
-        let fields: Vec<_> = text
-            .rsplit(')')
-            .next()
-            .unwrap()
-            .split_whitespace()
-            .collect();
+        let fields: Vec<_> = text.rsplit(')').next().unwrap().split_whitespace().collect();
         fields[11].parse::<u64>().unwrap() + fields[12].parse::<u64>().unwrap()
     }
 
@@ -224,10 +189,7 @@ impl<'d> App<'d> {
     pub fn exit(mut self) -> ExitStatus {
         let status = until("the end", || self.child.try_wait().unwrap());
         let lines = self.lines.lock().unwrap();
-        assert!(
-            !lines.iter().any(|line| line.contains("panicked")),
-            "{lines:#?}"
-        );
+        assert!(!lines.iter().any(|line| line.contains("panicked")), "{lines:#?}");
         status
     }
 }

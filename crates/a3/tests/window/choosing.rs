@@ -53,8 +53,7 @@ fn copying_the_command_line() {
     app.press("y");
     until("a line on the terminal", || {
         let text = app.said();
-        text.contains("a3 verlet 0.005 --scene chain --paused")
-            .then_some(())
+        text.contains("a3 verlet 0.005 --scene chain --paused").then_some(())
     });
     // A run that has advanced starts again; one whose pins were released is in a file.
     app.press_for("v", "colour", "speed");
@@ -62,8 +61,7 @@ fn copying_the_command_line() {
     app.press("y");
     until("another line", || {
         let text = app.said();
-        text.contains("a3 verlet 0.005 --scene chain --colour speed --paused")
-            .then_some(())
+        text.contains("a3 verlet 0.005 --scene chain --colour speed --paused").then_some(())
     });
     let file = display.home.join("a3-chain-1.toml");
     assert!(!file.exists());

@@ -107,10 +107,7 @@ fn comparing() {
     display.xdotool("mousedown 1");
     let hands = || hands(&app);
     let (_, near) = until("a hand in each pane", hands);
-    assert!(
-        near.0.abs_diff(x) < 40 && near.1.abs_diff(y) < 40,
-        "{near:?}"
-    );
+    assert!(near.0.abs_diff(x) < 40 && near.1.abs_diff(y) < 40, "{near:?}");
     go(x + 60, y - 40);
     until("both hands at the same place of their panes", || {
         let (a, b) = hands()?;
@@ -135,10 +132,6 @@ fn comparing() {
     // Both pictures come back after the loss of the device.
     app.press_for("F12", "devices", "2");
     app.expect_frames();
-    assert!(
-        halves(&display.screen(), is_red)
-            .into_iter()
-            .all(|red| red > 3000)
-    );
+    assert!(halves(&display.screen(), is_red).into_iter().all(|red| red > 3000));
     app.quit();
 }

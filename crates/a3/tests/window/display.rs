@@ -17,10 +17,7 @@ pub const MAX_WAIT: Duration = Duration::from_secs(30);
 /// Returns a command without input and output.
 pub fn quiet(program: &str) -> Command {
     let mut command = Command::new(program);
-    command
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .stdin(Stdio::null());
+    command.stdout(Stdio::null()).stderr(Stdio::null()).stdin(Stdio::null());
     command
 }
 
@@ -57,10 +54,7 @@ impl Display {
         let missing: Vec<_> = ["Xvfb", "openbox", "xdotool", "wmctrl", "xclip"]
             .into_iter()
             .filter(|tool| {
-                quiet("which")
-                    .arg(tool)
-                    .status()
-                    .map_or(true, |status| !status.success())
+                quiet("which").arg(tool).status().map_or(true, |status| !status.success())
             })
             .collect();
         if !missing.is_empty() {
@@ -69,10 +63,8 @@ impl Display {
                 "A3_REQUIRE_DISPLAY is set: no {missing:?}"
             );
             // Bypass the test runner, which hides the output of passing tests.
-            let _ = writeln!(
-                std::io::stderr(),
-                "SKIPPED, NOT TESTED: the window needs {missing:?}"
-            );
+            let _ =
+                writeln!(std::io::stderr(), "SKIPPED, NOT TESTED: the window needs {missing:?}");
             return None;
         }
         // A failed test has released the display too.
@@ -85,54 +77,31 @@ impl Display {
             .spawn()
             .unwrap();
         let mut number = String::new();
-        BufReader::new(server.stdout.take().unwrap())
-            .read_line(&mut number)
-            .unwrap();
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
         let name = format!(":{}", number.trim());
         let manager = quiet("openbox").env("DISPLAY", &name).spawn().unwrap();
-        let display = Self {
-            server,
-            manager,
-            name,
-            folder,
-            home: Folder::new(),
-            _lock: lock,
-        };
+        let display = Self { server, manager, name, folder, home: Folder::new(), _lock: lock };
         // A window that opens before the manager runs gets no focus.
         until("a window manager", || {
-            display
-                .command("wmctrl")
-                .arg("-m")
-                .status()
-                .unwrap()
-                .success()
-                .then_some(())
+            display.command("wmctrl").arg("-m").status().unwrap().success().then_some(())
         });
         Some(display)
     }
 
     /// Opens the program in its window, in at most three tries.
     pub fn open_app(&self, words: &str) -> App<'_> {
-        (0..3)
-            .find_map(|_| App::try_open(self, words))
-            .expect("no window in three tries")
+        (0..3).find_map(|_| App::try_open(self, words)).expect("no window in three tries")
     }
 
     pub fn command(&self, program: &str) -> Command {
         let mut command = quiet(program);
-        command
-            .env("DISPLAY", &self.name)
-            .env_remove("WAYLAND_DISPLAY");
+        command.env("DISPLAY", &self.name).env_remove("WAYLAND_DISPLAY");
         command
     }
 
     pub fn xdotool(&self, words: impl Words) -> String {
-        let output = self
-            .command("xdotool")
-            .args(words.list())
-            .stdout(Stdio::piped())
-            .output()
-            .unwrap();
+        let output =
+            self.command("xdotool").args(words.list()).stdout(Stdio::piped()).output().unwrap();
         String::from_utf8(output.stdout).unwrap()
     }
 

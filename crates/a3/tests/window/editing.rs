@@ -81,9 +81,7 @@ fn a_box_is_dragged_and_written() {
         let path = display.home.join(name);
         display.xdotool("key f");
         let text = until("a file", || read_to_string(&path).ok());
-        let line = text
-            .lines()
-            .find_map(|line| line.strip_prefix("center = ["));
+        let line = text.lines().find_map(|line| line.strip_prefix("center = ["));
         let first = line.and_then(|line| line.split(',').next()).unwrap();
         first.parse::<f64>().unwrap()
     };

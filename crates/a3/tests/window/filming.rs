@@ -27,11 +27,7 @@ fn check(path: &Path, least: usize) {
         assert_eq!(pair[0].delay().numer_denom_ms(), (50, 1));
         same += usize::from(pair[0].buffer() == pair[1].buffer());
     }
-    assert!(
-        3 * same < frames.len(),
-        "{same} of {} equal the previous one",
-        frames.len()
-    );
+    assert!(3 * same < frames.len(), "{same} of {} equal the previous one", frames.len());
 }
 
 #[test]

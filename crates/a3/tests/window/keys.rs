@@ -33,12 +33,9 @@ fn keys() {
         return;
     };
     let app = display.open_app("t 0.01");
-    for (key, value) in [
-        ("scene", "cloth"),
-        ("solver", "trapezoid"),
-        ("step", "0.01"),
-        ("size", "1280x720"),
-    ] {
+    for (key, value) in
+        [("scene", "cloth"), ("solver", "trapezoid"), ("step", "0.01"), ("size", "1280x720")]
+    {
         assert_eq!(app.get(key), value);
     }
 
@@ -48,10 +45,7 @@ fn keys() {
     let factor = (app.number("time").unwrap() - time) / begun.elapsed().as_secs_f64();
     assert!((0.5..1.25).contains(&factor), "{factor} times real time");
     let (time, steps) = (app.number("time").unwrap(), app.number("steps").unwrap());
-    assert!(
-        (time - 0.01 * steps).abs() < 1e-3,
-        "{time} s after {steps} steps"
-    );
+    assert!((time - 0.01 * steps).abs() < 1e-3, "{time} s after {steps} steps");
 
     app.press_for("s", "swing", "true");
     app.press_for("d", "wind", "true");
@@ -132,18 +126,10 @@ fn pausing_the_camera_and_help() {
     app.wait("steps", |found| found == steps + 1.0);
 
     // The surface is red, the wires are not; the button that films is, a little.
-    assert!(
-        shaded.count(is_red) > 20_000,
-        "{} red pixels",
-        shaded.count(is_red)
-    );
+    assert!(shaded.count(is_red) > 20_000, "{} red pixels", shaded.count(is_red));
     app.press_for("w", "style", "Wireframe");
     let wires = app.still_screen();
-    assert!(
-        wires.count(is_red) < 400,
-        "{} red pixels",
-        wires.count(is_red)
-    );
+    assert!(wires.count(is_red) < 400, "{} red pixels", wires.count(is_red));
     assert!(wires.difference(&shaded) > 2.0);
     // The springs have three colours.
     app.press_for("w", "style", "Springs");
@@ -151,10 +137,7 @@ fn pausing_the_camera_and_help() {
     assert!(springs.difference(&wires) > 1.0);
     let amber = |[r, g, b]: [u8; 3]| r > 180 && g > 100 && r - 30 > g && g - 30 > b;
     let violet = |[r, g, b]: [u8; 3]| b > 120 && r > 60 && b - 20 > r && r - 20 > g;
-    for (name, count) in [
-        ("amber", springs.count(amber)),
-        ("violet", springs.count(violet)),
-    ] {
+    for (name, count) in [("amber", springs.count(amber)), ("violet", springs.count(violet))] {
         assert!(count > 1000, "{count} {name} pixels");
     }
     app.press_for("w", "style", "Shaded");
@@ -162,26 +145,18 @@ fn pausing_the_camera_and_help() {
     // Closing the help restores the picture.
     let before = app.still_screen();
     app.press_for("h", "help", "true");
-    until("the help", || {
-        (display.screen().difference(&before) > 1.0).then_some(())
-    });
+    until("the help", || (display.screen().difference(&before) > 1.0).then_some(()));
     app.press_for("question", "help", "false");
-    until("no help", || {
-        (display.screen().difference(&before) < 0.1).then_some(())
-    });
+    until("no help", || (display.screen().difference(&before) < 0.1).then_some(()));
 
     escape_closes_and_asks(&app);
 
     // Wheel and drag move the camera, and c resets it.
     app.point_and(1150, 600, "click 4 click 4");
     display.xdotool("mousedown 1 mousemove_relative -- -200 20 mouseup 1");
-    until("another view", || {
-        (display.screen().difference(&before) > 1.0).then_some(())
-    });
+    until("another view", || (display.screen().difference(&before) > 1.0).then_some(()));
     app.press("c");
-    until("the first view", || {
-        (display.screen().difference(&before) < 0.1).then_some(())
-    });
+    until("the first view", || (display.screen().difference(&before) < 0.1).then_some(()));
 
     app.press_for("space", "paused", "false");
     app.wait("steps", |found| found > steps + 5.0);

@@ -30,10 +30,7 @@ fn pulling() {
     app.expect("cursor", "Grabbing");
     let particle = app.get("grabbed");
     let hand = || {
-        let (x, y) = app
-            .get("hand")
-            .split_once(',')
-            .map(|(x, y)| (x.parse(), y.parse()))?;
+        let (x, y) = app.get("hand").split_once(',').map(|(x, y)| (x.parse(), y.parse()))?;
         Some((x.ok()?, y.ok()?))
     };
     let (hx, hy): (i32, i32) = until("a hand", hand);
@@ -70,9 +67,7 @@ fn pulling() {
     app.press_for("i", "parallel", "true");
     app.press_for("i", "parallel", "false");
     app.press("j");
-    until("a particle to follow", || {
-        (app.get("followed") != "-").then_some(())
-    });
+    until("a particle to follow", || (app.get("followed") != "-").then_some(()));
     // Where there is no particle, the camera stops following.
     go(30, 600);
     app.press_for("j", "followed", "-");
@@ -132,9 +127,7 @@ fn clicks_slow_motion_and_going_back() {
     let before = app.still_screen();
     assert_ne!(app.get("springs_of"), "-");
     click("mousedown 3 mousemove_relative 60 20 mouseup 3");
-    until("another view", || {
-        (display.screen().difference(&before) > 0.5).then_some(())
-    });
+    until("another view", || (display.screen().difference(&before) > 0.5).then_some(()));
     assert_eq!(app.get("pins"), "20");
     app.point(1200, 650);
     display.xdotool("click --repeat 2 --delay 60 1");

@@ -42,10 +42,7 @@ fn tuning() {
     let table = display.home.join("a3-cloth-1.csv");
     until("the plots in a file", || table.exists().then_some(()));
     let table = std::fs::read_to_string(table).unwrap();
-    assert!(
-        table.starts_with("solver,time (s),") && table.lines().count() > 3,
-        "{table}"
-    );
+    assert!(table.starts_with("solver,time (s),") && table.lines().count() > 3, "{table}");
     app.press_for("F11", "size", "1400x900");
     app.press_for("F11", "size", "1280x720");
     app.press("f");

@@ -34,10 +34,7 @@ fn plotting() {
     let bytes = std::fs::read(picture).unwrap();
     assert!(bytes.starts_with(b"\x89PNG"));
     // A double click on the particle ends its plot; another one begins it again.
-    let (x, y) = app
-        .still_screen()
-        .block(60..800, 300..800, 6, is_red)
-        .unwrap();
+    let (x, y) = app.still_screen().block(60..800, 300..800, 6, is_red).unwrap();
     for plots in ["0", "1"] {
         display.xdotool(format!("mousemove {x} {y} click --repeat 2 --delay 60 1"));
         app.expect("plots", plots);

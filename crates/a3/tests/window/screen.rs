@@ -23,22 +23,14 @@ impl Screen {
         let word =
             |k: usize| u32::from_be_bytes(bytes[4 * k..4 * k + 4].try_into().unwrap()) as usize;
         let (width, height, stride, start) = (word(4), word(5), word(12), word(0) + 12 * word(19));
-        assert_eq!(
-            (word(7), word(11)),
-            (0, 32),
-            "four bytes a pixel, blue first"
-        );
+        assert_eq!((word(7), word(11)), (0, 32), "four bytes a pixel, blue first");
         let pixel = |x: usize, y: usize| {
             let at = start + y * stride + 4 * x;
             [bytes[at + 2], bytes[at + 1], bytes[at]]
         };
-        let pixels = (0..height)
-            .flat_map(|y| (0..width).map(move |x| (x, y)))
-            .map(|(x, y)| pixel(x, y));
-        Self {
-            width,
-            pixels: pixels.collect(),
-        }
+        let pixels =
+            (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y));
+        Self { width, pixels: pixels.collect() }
     }
 
     pub fn count(&self, is: impl Fn([u8; 3]) -> bool) -> usize {
@@ -54,10 +46,7 @@ impl Screen {
         let inside = |k: &usize| {
             x.contains(&((k % self.width) as i32)) && y.contains(&((k / self.width) as i32))
         };
-        (0..self.pixels.len())
-            .filter(inside)
-            .filter(|k| is(self.pixels[*k]))
-            .count()
+        (0..self.pixels.len()).filter(inside).filter(|k| is(self.pixels[*k])).count()
     }
 
     /// Returns the middle of the first square of a side (px) within these ranges for all of whose
@@ -84,20 +73,14 @@ impl Screen {
 
     /// Returns the mean absolute difference of the channels, from 0 to 255.
     pub fn difference(&self, other: &Self) -> f64 {
-        let pairs = self
-            .pixels
-            .iter()
-            .flatten()
-            .zip(other.pixels.iter().flatten());
+        let pairs = self.pixels.iter().flatten().zip(other.pixels.iter().flatten());
         pairs.map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>()
             / (3.0 * self.pixels.len() as f64)
     }
 
     /// Returns the mean position of the pixels for which `is` is true.
     pub fn middle(&self, is: impl Fn([u8; 3]) -> bool) -> (i32, i32) {
-        let places: Vec<_> = (0..self.pixels.len())
-            .filter(|k| is(self.pixels[*k]))
-            .collect();
+        let places: Vec<_> = (0..self.pixels.len()).filter(|k| is(self.pixels[*k])).collect();
         assert!(!places.is_empty(), "nothing of that colour on the screen");
         let x = places.iter().map(|k| k % self.width).sum::<usize>() / places.len();
         let y = places.iter().map(|k| k / self.width).sum::<usize>() / places.len();

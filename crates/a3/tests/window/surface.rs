@@ -28,17 +28,11 @@ fn sizes_minimising_a_lost_device_and_closing() {
     app.expect("visible", "false");
     let (time, frames) = (app.number("time").unwrap(), app.number("frames").unwrap());
     sleep(Duration::from_secs(2));
-    assert!(
-        app.number("frames").unwrap() <= frames + 1.0,
-        "drawn while minimised"
-    );
+    assert!(app.number("frames").unwrap() <= frames + 1.0, "drawn while minimised");
     display.xdotool(["windowmap", &app.window, "windowactivate", &app.window]);
     app.expect("visible", "true");
     app.expect_frames();
-    assert!(
-        app.number("time").unwrap() < time + 1.5,
-        "time ran on while minimised"
-    );
+    assert!(app.number("time").unwrap() < time + 1.5, "time ran on while minimised");
 
     // After the loss of the device, the picture comes back, and the run continues.
     for lost in 1..=3 {
@@ -49,11 +43,7 @@ fn sizes_minimising_a_lost_device_and_closing() {
     }
     assert!(display.screen().count(is_red) > 10_000);
 
-    display
-        .command("wmctrl")
-        .args(["-i", "-c", &app.window])
-        .status()
-        .unwrap();
+    display.command("wmctrl").args(["-i", "-c", &app.window]).status().unwrap();
     assert!(app.exit().success());
 }
 

@@ -29,10 +29,7 @@ fn watching() {
     fs::write(&file, "step = 0.002\n[[cloth]]\ngrid = [5,").unwrap();
     sleep(Duration::from_secs(1));
     app.expect_frames();
-    assert_eq!(
-        (app.get("pins"), app.get("step")),
-        ("2".into(), "0.005".into())
-    );
+    assert_eq!((app.get("pins"), app.get("step")), ("2".into(), "0.005".into()));
     app.press_for("space", "paused", "true");
     save("0.002", "'bottom'");
     app.expect("pins", "5");

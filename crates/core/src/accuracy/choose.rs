@@ -128,11 +128,7 @@ pub fn choose(
     begin: impl FnMut(&'static Method),
 ) -> Result<Option<Vec<Candidate>>, Error> {
     let methods: Vec<_> = METHODS.iter().collect();
-    let demand = Demand {
-        metric,
-        error,
-        timed: false,
-    };
+    let demand = Demand { metric, error, timed: false };
     choose_among(&methods, scene, reference, demand, go_on, begin)
 }
 
@@ -168,11 +164,7 @@ pub fn choose_among(
         }))
     };
     let is_small = scene.model.work() < SMALL_WORK;
-    let max_ratio = if is_small && demand.timed {
-        SMALL_MAX_COST_RATIO
-    } else {
-        MAX_COST_RATIO
-    };
+    let max_ratio = if is_small && demand.timed { SMALL_MAX_COST_RATIO } else { MAX_COST_RATIO };
     let max_cost = |found: &[Candidate]| {
         let second = found.get(1).map_or(f64::INFINITY, |c| max_ratio * c.work);
         second.min(reference.max_work)
@@ -183,11 +175,7 @@ pub fn choose_among(
     methods.sort_by_key(|method| {
         let is_late = |fits: bool| reference.is_stiff && !fits;
         let order = std::cmp::Reverse(method.order);
-        (
-            is_late(method.is_implicit()),
-            is_late(method.is_adaptive()),
-            order,
-        )
+        (is_late(method.is_implicit()), is_late(method.is_adaptive()), order)
     });
     let frames = &reference.frames;
     let would_stall =
@@ -301,9 +289,8 @@ impl<M> Search<'_, M> {
                 return Ok(Found::Nothing);
             };
             // The least cost of a run with fixed steps is known beforehand.
-            let least = control
-                .step()
-                .map(|step| frames.until / step * f64::from(method.evaluations));
+            let least =
+                control.step().map(|step| frames.until / step * f64::from(method.evaluations));
             if least.is_some_and(|least| least > self.max_cost) {
                 return Ok(Found::Nothing);
             }
@@ -378,11 +365,7 @@ impl<M> Search<'_, M> {
     /// predicted by the order, with a margin, if the last two runs failed as the order predicts;
     /// else it is that of the last run.
     fn predicted_bound(&self, before: Option<(f64, f64)>, last: (f64, f64)) -> f64 {
-        let order = if self.method.is_adaptive() {
-            1.0
-        } else {
-            f64::from(self.method.order)
-        };
+        let order = if self.method.is_adaptive() { 1.0 } else { f64::from(self.method.order) };
         let measured = before.map(|before| (before.1 / last.1).ln() / (before.0 / last.0).ln());
         match measured {
             Some(measured)
@@ -460,12 +443,7 @@ pub fn ladder(
     let limit = largest_step(method, modes)?.filter(|limit| limit.step > 0.0);
     let limit = limit.map_or(f64::INFINITY, |limit| limit.step);
     let until = frames.until;
-    let mut count = round(
-        (until / (MAX_LIMIT_RATIO * limit))
-            .ceil()
-            .max(MIN_STEPS as f64),
-        until,
-    );
+    let mut count = round((until / (MAX_LIMIT_RATIO * limit)).ceil().max(MIN_STEPS as f64), until);
     let mut steps = vec![];
     while count <= most {
         steps.push(Control::Step(until / count as f64));
@@ -489,9 +467,6 @@ fn round(count: f64, until: f64) -> u64 {
 #[must_use]
 pub fn coarser(control: Control, frames: &Frames) -> Option<Control> {
     let count = (frames.until / control.step()?).round();
-    let fewer = round(
-        (count / RUNG_RATIO).floor().max(MIN_STEPS as f64),
-        frames.until,
-    );
+    let fewer = round((count / RUNG_RATIO).floor().max(MIN_STEPS as f64), frames.until);
     ((fewer as f64) < count).then(|| Control::Step(frames.until / fewer as f64))
 }

@@ -22,10 +22,7 @@ impl Frames {
     /// Creates frames up to `until` (s): at least 60 in each second, and at least 60 in all.
     #[must_use]
     pub fn new(until: f64) -> Self {
-        Self {
-            until,
-            count: 60 * until.ceil().max(1.0) as u64,
-        }
+        Self { until, count: 60 * until.ceil().max(1.0) as u64 }
     }
 
     /// Creates frames for runs of a model up to `until` (s): those of [`new`](Self::new) for a
@@ -47,19 +44,13 @@ impl Frames {
     /// Returns the time of frame k (s).
     #[must_use]
     pub fn time(&self, k: u64) -> f64 {
-        if k == self.count {
-            self.until
-        } else {
-            k as f64 * self.spacing()
-        }
+        if k == self.count { self.until } else { k as f64 * self.spacing() }
     }
 
     /// Returns the number of steps of h (s) that reach the last frame; the last step may be
     /// shorter.
     #[must_use]
     pub fn steps(&self, h: f64) -> u64 {
-        (self.until / h - Simulation::STEP_END_TOLERANCE)
-            .ceil()
-            .max(1.0) as u64
+        (self.until / h - Simulation::STEP_END_TOLERANCE).ceil().max(1.0) as u64
     }
 }

@@ -60,11 +60,8 @@ mod tests {
                     let all = [value(t), slope(t), bend(t)];
                     all.into_iter().take(count)
                 });
-                let found: f64 = weights(&nodes, count, at)
-                    .iter()
-                    .zip(data)
-                    .map(|(w, d)| w * d)
-                    .sum();
+                let found: f64 =
+                    weights(&nodes, count, at).iter().zip(data).map(|(w, d)| w * d).sum();
                 assert!(
                     (found - value(at)).abs() < 1e-12 * value(at).abs().max(1.0),
                     "{count} {at}"

@@ -73,10 +73,7 @@ pub fn horizon(scene: &Scene, until: f64, go_on: GoOn) -> Result<Option<Horizon>
         Error::Invalid("no method that estimates the horizon is in the table".into())
     })?;
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
-    let feedback = scene
-        .model
-        .network()
-        .and_then(Linearized::baumgarte_frequency);
+    let feedback = scene.model.network().and_then(Linearized::baumgarte_frequency);
     let fastest = fastest(&modes, feedback).map_or(1.0, Mode::frequency);
     let is_own = scene.model.network().is_none();
     let longest = if is_own && until.is_finite() {
@@ -200,11 +197,7 @@ impl TwoRuns {
             grown = (time, most);
         }
         // Growth by a small factor is not chaos.
-        let lyapunov = if grown.1 > 30.0 {
-            grown.0 / grown.1.ln()
-        } else {
-            f64::INFINITY
-        };
+        let lyapunov = if grown.1 > 30.0 { grown.0 / grown.1.ln() } else { f64::INFINITY };
         let horizon = Horizon {
             until,
             lyapunov,

@@ -71,31 +71,18 @@ pub fn measure_by(
     go_on: GoOn,
 ) -> Result<Option<Outcome>, Error> {
     coordinates.fill(0.0);
-    let mut tally = Tally {
-        reference,
-        coordinates,
-        errors: Errors::default(),
-        last: reference.start.clone(),
-    };
+    let mut tally =
+        Tally { reference, coordinates, errors: Errors::default(), last: reference.start.clone() };
     if let Some(solve) = method.solve() {
         return measure_whole(clock, scene, (method, solve), control, &mut tally).map(Some);
     }
     let mut simulation = Simulation::new(scene.clone(), method, control)?;
     let mut visit =
         |seen: &FrameState| tally.add(seen.frame, seen.run.model(), seen.state, seen.within);
-    let mut observer = Observer {
-        visit: &mut visit,
-        clock,
-        spent: Duration::ZERO,
-        max_work: reference.max_work,
-    };
+    let mut observer =
+        Observer { visit: &mut visit, clock, spent: Duration::ZERO, max_work: reference.max_work };
     let begun = clock();
-    let end = run_observed(
-        &mut simulation,
-        &reference.frames,
-        go_on,
-        Some(&mut observer),
-    )?;
+    let end = run_observed(&mut simulation, &reference.frames, go_on, Some(&mut observer))?;
     let time = clock().saturating_sub(begun + observer.spent);
     Ok(end.map(|lost| Outcome {
         time,
@@ -155,15 +142,10 @@ fn measure_whole(
     method.check(scene.model.system())?;
     method.check_control(control)?;
     let Control::Tolerance(tolerance) = control else {
-        return Err(Error::Invalid(format!(
-            "{} takes a tolerance, not a step",
-            method.title
-        )));
+        return Err(Error::Invalid(format!("{} takes a tolerance, not a step", method.title)));
     };
     let (reference, dim) = (tally.reference, scene.state.len());
-    let frames: Vec<u64> = (1..=reference.frames.count)
-        .filter(|k| reference.counts(*k))
-        .collect();
+    let frames: Vec<u64> = (1..=reference.frames.count).filter(|k| reference.counts(*k)).collect();
     let times: Vec<f64> = frames.iter().map(|k| reference.frames.time(*k)).collect();
     let most = reference.max_work;
     let mut f = Derivative::new(scene.model.system()).with_most(most);
@@ -203,11 +185,5 @@ fn measure_whole(
         }
         tally.add(k, &scene.model, state, None);
     }
-    Ok(Outcome {
-        time,
-        errors: tally.errors,
-        work: f.work(),
-        guarded: Guarded::default(),
-        lost,
-    })
+    Ok(Outcome { time, errors: tally.errors, work: f.work(), guarded: Guarded::default(), lost })
 }

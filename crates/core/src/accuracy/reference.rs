@@ -103,10 +103,7 @@ impl Reference {
     /// # Errors
     /// The scene cannot be run, or the run of the reference blows up.
     pub fn finest(scene: &Scene, frames: Frames, go_on: GoOn) -> Result<Option<Self>, Error> {
-        let precision = Precision {
-            metric: Metric::of_motion(&scene.model),
-            ..Precision::FINEST
-        };
+        let precision = Precision { metric: Metric::of_motion(&scene.model), ..Precision::FINEST };
         Self::new(scene, frames, Scope::default(), precision, go_on)
     }
 
@@ -170,8 +167,7 @@ impl Reference {
     /// Returns the errors at the nearest end of a step that encloses frame k, counted from 1.
     pub(super) fn errors_between(&self, model: &Model, k: u64, step: &EnclosingStep) -> Errors {
         let start = (&self.start, self.frames);
-        self.trajectory
-            .errors_between(start, (model, k, step), self.scope)
+        self.trajectory.errors_between(start, (model, k, step), self.scope)
     }
 
     /// Returns the positions (m) of a model at time t (s), at or near frame k, counted from 1.
@@ -219,10 +215,7 @@ impl Reference {
     /// Returns the largest errors of a trajectory over the frames that count.
     fn disagreement(&self, others: &[Snapshot]) -> Errors {
         let frames = (1..=self.frames.count).filter(|k| self.counts(*k));
-        let errors = frames.map(|k| {
-            self.trajectory
-                .errors(k, &others[k as usize - 1], self.scope)
-        });
+        let errors = frames.map(|k| self.trajectory.errors(k, &others[k as usize - 1], self.scope));
         errors.fold(Errors::default(), Errors::max)
     }
 }
@@ -274,11 +267,8 @@ impl Making<'_> {
     fn by_tolerances(&mut self) -> Result<Option<(Errors, f64)>, Error> {
         let method = accurate(self.reference.is_stiff)?;
         let (loosest, tightest) = TOLERANCES;
-        let mut tolerance = if self.precision.max_work.is_finite() {
-            loosest
-        } else {
-            self.precision.tolerance()
-        };
+        let mut tolerance =
+            if self.precision.max_work.is_finite() { loosest } else { self.precision.tolerance() };
         tolerance *= RATIO;
         let is_own = self.scene.model.network().is_none();
         let mut looser: Option<Run> = None;
@@ -447,11 +437,8 @@ pub struct Precision {
 
 impl Precision {
     /// The highest precision of positions that double precision allows.
-    pub const FINEST: Self = Self {
-        metric: Metric::Position,
-        uncertainty: 0.0,
-        max_work: f64::INFINITY,
-    };
+    pub const FINEST: Self =
+        Self { metric: Metric::Position, uncertainty: 0.0, max_work: f64::INFINITY };
 
     /// Returns the tolerance that is expected to reach it.
     fn tolerance(&self) -> f64 {

@@ -158,12 +158,7 @@ fn check_work(run: &Simulation, most: Option<f64>) -> Result<(), Error> {
 
 /// Returns the state of a run that has arrived at a frame.
 fn at_end(run: &Simulation, frame: u64) -> FrameState<'_> {
-    FrameState {
-        frame,
-        run,
-        state: run.state(),
-        within: None,
-    }
+    FrameState { frame, run, state: run.state(), within: None }
 }
 
 /// Advances to the end of step n, counted from the beginning. `false` if `go_on` returned false.
@@ -228,9 +223,7 @@ fn in_steps(
         }
         // Both ends of the step that encloses the frame, and one end before them if there is one.
         let begun = (steps.floor() as u64).min(last);
-        let oldest = begun
-            .saturating_sub(1)
-            .min((last + 1).saturating_sub(NODES));
+        let oldest = begun.saturating_sub(1).min((last + 1).saturating_sub(NODES));
         let at = oldest.max(simulation.steps());
         if !to_step(simulation, frames, at, go_on)? {
             return Ok(false);
@@ -269,12 +262,7 @@ fn in_steps(
 fn remember_end(ends: &mut Vec<End>, simulation: &Simulation) {
     let y = simulation.state();
     let mut end = if ends.len() < NODES as usize {
-        End {
-            number: 0,
-            t: 0.0,
-            y: y.to_vec(),
-            f: y.to_vec(),
-        }
+        End { number: 0, t: 0.0, y: y.to_vec(), f: y.to_vec() }
     } else {
         ends.remove(0)
     };

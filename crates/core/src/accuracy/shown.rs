@@ -39,10 +39,7 @@ pub fn shown(
     reference: &Reference,
     go_on: GoOn,
 ) -> Result<Option<Shown>, Error> {
-    let frames = Frames {
-        count: TIMES * reference.frames.count,
-        ..reference.frames
-    };
+    let frames = Frames { count: TIMES * reference.frames.count, ..reference.frames };
     let tolerance = Control::Tolerance(reference.trajectory.tolerance);
     let mut exact = scene.clone();
     exact.limits.absolute = None;
@@ -63,10 +60,7 @@ pub fn shown(
         for (t, is_end) in end.map(|t| (t, true)).into_iter().chain([(time, is_end)]) {
             if !succeeded(exact.advance_to(t))? || !succeeded(run.advance_to(t))? {
                 let lost = Errors::with_all(f64::INFINITY);
-                return Ok(Some(Shown {
-                    at_ends: lost,
-                    anywhere: lost,
-                }));
+                return Ok(Some(Shown { at_ends: lost, anywhere: lost }));
             }
             truth = truth.next(exact.model(), t, exact.state());
             own = own.next(run.model(), t, run.state());

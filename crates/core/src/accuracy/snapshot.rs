@@ -113,11 +113,7 @@ impl Snapshot {
         };
         let of_more = network.contact_layer().is_some() || !network.bodies().is_empty();
         Self {
-            energy: if of_more {
-                f64::INFINITY
-            } else {
-                network.energy_of(t, y).total()
-            },
+            energy: if of_more { f64::INFINITY } else { network.energy_of(t, y).total() },
             ..Self::of_motion(network, y)
         }
     }
@@ -129,10 +125,7 @@ impl Snapshot {
         // Times are in units of their distance, so that the weights are of ordinary size.
         let (first, last) = (known[0].0, known[known.len() - 1].0);
         let unit = (last - first) / (known.len() - 1) as f64;
-        let nodes: Vec<_> = known
-            .iter()
-            .map(|(time, _)| (time - first) / unit)
-            .collect();
+        let nodes: Vec<_> = known.iter().map(|(time, _)| (time - first) / unit).collect();
         let [of_values, of_both] = [1, 2].map(|count| weights(&nodes, count, (t - first) / unit));
         let mut y = vec![0.0; known[0].1.positions.len() + known[0].1.velocities.len()];
         let (x, v) = y.split_at_mut(known[0].1.positions.len());
@@ -155,11 +148,7 @@ impl Snapshot {
                 ..Self::default()
             },
         };
-        Self {
-            energy,
-            momentum,
-            ..at
-        }
+        Self { energy, momentum, ..at }
     }
 
     /// Creates the next snapshot of a run after this one, of the state y of a model at time t (s).
@@ -180,10 +169,7 @@ impl Snapshot {
 
     /// Returns the snapshot at time t (s) if nothing moves any more.
     pub fn still(&self, t: f64) -> Self {
-        Self {
-            impact: self.impact.still(t, self.penetration > 0.0),
-            ..self.clone()
-        }
+        Self { impact: self.impact.still(t, self.penetration > 0.0), ..self.clone() }
     }
 
     /// Returns the positions (m): all x, all y, all z.
@@ -206,10 +192,7 @@ impl Snapshot {
         let along = positions.clone().zip(&self.velocities).map(|(d, v)| d * v);
         let (position, state) = match self.particles {
             0 => {
-                let largest = self
-                    .sizes
-                    .iter()
-                    .fold(0.0, |most: f64, size| most.max(*size));
+                let largest = self.sizes.iter().fold(0.0, |most: f64, size| most.max(*size));
                 let over = |size: f64| match size {
                     size if size > ROUNDING * largest => size,
                     _ if largest > 0.0 => largest,
@@ -311,9 +294,7 @@ fn sizes(numbers: &[f64], scales: &[f64]) -> Vec<f64> {
 
 /// Lists the structural springs of a network whose rest length is above 0.
 fn structural(network: &Network) -> impl Iterator<Item = crate::Spring> {
-    network
-        .springs()
-        .filter(|s| s.kind == SpringKind::Structural && s.law.rest_length > 0.0)
+    network.springs().filter(|s| s.kind == SpringKind::Structural && s.law.rest_length > 0.0)
 }
 
 /// Times of the first impact; one that has not begun or ended yet has the time of the state.

@@ -20,11 +20,7 @@ pub(super) struct Trajectory {
 impl Trajectory {
     pub fn new(snapshots: Vec<Snapshot>, tolerance: f64, scope: Scope) -> Self {
         let speeds = snapshots.iter().map(|s| s.square_speed(scope));
-        Self {
-            square_speed: speeds.fold(f64::MIN_POSITIVE, f64::max),
-            snapshots,
-            tolerance,
-        }
+        Self { square_speed: speeds.fold(f64::MIN_POSITIVE, f64::max), snapshots, tolerance }
     }
 
     /// Returns the errors of a snapshot at frame k, counted from 1.
@@ -68,11 +64,7 @@ impl Trajectory {
             errors.position = errors.position.max(told.position);
             errors.state = errors.state.max(told.state);
         }
-        Errors {
-            penetration: f64::INFINITY,
-            impact: f64::INFINITY,
-            ..errors
-        }
+        Errors { penetration: f64::INFINITY, impact: f64::INFINITY, ..errors }
     }
 
     /// Returns the times (s) and snapshots of the frames nearest to a time t (s).
@@ -94,9 +86,6 @@ impl Trajectory {
     /// Returns the errors of a snapshot against another that is exact.
     pub fn errors_of(&self, exact: &Snapshot, other: &Snapshot, scope: Scope) -> Errors {
         let errors = exact.errors_of(other, scope);
-        Errors {
-            phase: errors.phase / self.square_speed,
-            ..errors
-        }
+        Errors { phase: errors.phase / self.square_speed, ..errors }
     }
 }

@@ -122,16 +122,7 @@ impl<const B: usize, const P: usize> WithSimd for Factorise<'_, B, P> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> bool {
-        let Factor {
-            diagonal,
-            blocks,
-            places,
-            first,
-            next,
-            reached,
-            negative,
-            ..
-        } = self.factor;
+        let Factor { diagonal, blocks, places, first, next, reached, negative, .. } = self.factor;
         let Pattern { starts, rows, .. } = self.pattern;
         let [places, first, next, reached] =
             [places, first, next, reached].map(|numbers| &mut numbers[..]);
@@ -194,13 +185,7 @@ impl<const B: usize, const P: usize> WithSimd for Solve<'_, B, P> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Factor {
-            diagonal,
-            blocks,
-            unknowns,
-            negative,
-            ..
-        } = self.factor;
+        let Factor { diagonal, blocks, unknowns, negative, .. } = self.factor;
         let Pattern { starts, rows, .. } = self.pattern;
         let (rows, blocks, unknowns) = (&rows[..], &blocks[..], &mut unknowns[..]);
         for (k, l) in diagonal.iter().enumerate() {

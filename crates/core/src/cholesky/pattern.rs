@@ -55,11 +55,7 @@ impl Pattern {
         }
         let mut after = vec![vec![]; n];
         for ([i, j], tie) in ties.iter().zip(n as u32..) {
-            let last = if ranks[*i as usize] > ranks[*j as usize] {
-                i
-            } else {
-                j
-            };
+            let last = if ranks[*i as usize] > ranks[*j as usize] { i } else { j };
             after[*last as usize].push(tie);
             let mut ends = vec![*i, *j];
             ends.dedup();
@@ -86,19 +82,11 @@ impl Pattern {
         }
         for column in &sorted {
             let from = rows.len();
-            rows.extend(
-                columns[*column as usize]
-                    .iter()
-                    .map(|row| places[*row as usize]),
-            );
+            rows.extend(columns[*column as usize].iter().map(|row| places[*row as usize]));
             rows[from..].sort_unstable();
             starts.push(rows.len() as u32);
         }
-        Self {
-            ranks: ranks.iter().map(|rank| places[*rank as usize]).collect(),
-            starts,
-            rows,
-        }
+        Self { ranks: ranks.iter().map(|rank| places[*rank as usize]).collect(), starts, rows }
     }
 
     /// Returns the number of rows of the matrix.
@@ -113,10 +101,7 @@ impl Pattern {
 
     /// Returns the number of products of blocks in a factorisation.
     pub fn products(&self) -> f64 {
-        let lengths = self
-            .starts
-            .windows(2)
-            .map(|ends| f64::from(ends[1] - ends[0]));
+        let lengths = self.starts.windows(2).map(|ends| f64::from(ends[1] - ends[0]));
         lengths.map(|m| 0.5 * m * (m + 3.0)).sum()
     }
 
@@ -168,9 +153,7 @@ fn columns(order: &[u32], meets: &[Vec<u32>]) -> (Vec<u32>, Vec<Vec<u32>>) {
     let mut seen = vec![u32::MAX; n];
     for (row, rank) in order.iter().zip(0u32..) {
         let mut column = vec![];
-        let own = meets[*row as usize]
-            .iter()
-            .map(|other| ranks[*other as usize]);
+        let own = meets[*row as usize].iter().map(|other| ranks[*other as usize]);
         let from_children = children[rank as usize].iter();
         let inherited = from_children.flat_map(|child| columns[*child as usize].iter().copied());
         for other in own.chain(inherited) {
@@ -250,11 +233,7 @@ pub(crate) fn order(mut meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
         }
         graph.eliminate(i);
         let members = &graph.members[i as usize];
-        queue.extend(
-            members
-                .iter()
-                .map(|j| Reverse((graph.degree[*j as usize], *j))),
-        );
+        queue.extend(members.iter().map(|j| Reverse((graph.degree[*j as usize], *j))));
     }
     None
 }
@@ -381,10 +360,7 @@ impl Graph {
     fn merge(&mut self, members: &mut Vec<u32>) {
         let key = |i: u32| {
             let lists = [&self.meets[i as usize], &self.elements[i as usize]];
-            lists
-                .into_iter()
-                .flatten()
-                .fold(0u32, |sum, j| sum.wrapping_add(*j))
+            lists.into_iter().flatten().fold(0u32, |sum, j| sum.wrapping_add(*j))
         };
         let mut keyed: Vec<_> = members.iter().map(|i| (key(*i), *i)).collect();
         keyed.sort_unstable();

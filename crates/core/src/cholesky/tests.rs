@@ -127,10 +127,7 @@ fn random_matrices_are_solved() {
         }
         let numbers = residual::<1, 1>(n, &pairs, 0.0, &mut random).unwrap();
         let blocks = residual::<3, 4>(n, &pairs, 0.0, &mut random).unwrap();
-        assert!(
-            numbers < 1e-10 && blocks < 1e-10,
-            "{k}: {numbers:e} {blocks:e}"
-        );
+        assert!(numbers < 1e-10 && blocks < 1e-10, "{k}: {numbers:e} {blocks:e}");
     }
 }
 
@@ -183,24 +180,16 @@ fn factors_are_about_as_sparse_as_by_exact_minimum_degree() {
     let chain: Vec<_> = (1..200).map(|i| [i - 1, i]).collect();
     let star: Vec<_> = (1..200).map(|i| [i, 0]).collect();
     for tree in [chain, star] {
-        assert_eq!(
-            Pattern::new(200, tree.into_iter(), 199).unwrap().size(),
-            199
-        );
+        assert_eq!(Pattern::new(200, tree.into_iter(), 199).unwrap().size(), 199);
     }
     let mut random = SplitMix(3);
     let mut thicket = |n: u32| -> Vec<[u32; 2]> {
         let link = |i: u32, random: &mut SplitMix| [i, below(i as usize, random) as u32];
-        (0..2 * n)
-            .map(|k| link(1 + k % (n - 1), &mut random))
-            .collect()
+        (0..2 * n).map(|k| link(1 + k % (n - 1), &mut random)).collect()
     };
     let sides = if cfg!(miri) { [4, 5] } else { [20, 30] };
     let nets = sides.map(|side| (side * side, grid(side)));
-    for (n, pairs) in nets
-        .into_iter()
-        .chain([(150, thicket(150)), (60, thicket(60))])
-    {
+    for (n, pairs) in nets.into_iter().chain([(150, thicket(150)), (60, thicket(60))]) {
         let exact = least_degree(n as usize, &pairs);
         let pattern = Pattern::new(n as usize, pairs.iter().copied(), usize::MAX).unwrap();
         let found = pattern.products();

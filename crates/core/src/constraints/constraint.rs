@@ -217,12 +217,7 @@ impl Constraint {
                 positive("the length of a rod", length)?;
                 check_different("rod", i, j)?;
             }
-            Self::Rope {
-                i,
-                j,
-                length,
-                restitution,
-            } => {
+            Self::Rope { i, j, length, restitution } => {
                 positive("the length of a rope", length)?;
                 check_different("rope", i, j)?;
                 check_restitution("a rope", restitution)?;
@@ -253,19 +248,12 @@ impl Constraint {
                     visit(Equation::plane(axis, x - position));
                 }
             }
-            Self::Line {
-                point, direction, ..
-            } => {
+            Self::Line { point, direction, .. } => {
                 for normal in normals(direction) {
                     visit(Equation::plane(normal, x - point));
                 }
             }
-            Self::Circle {
-                center,
-                normal,
-                radius,
-                ..
-            } => {
+            Self::Circle { center, normal, radius, .. } => {
                 let within = |a: Vector3<f64>| a - normal * normal.dot(&a);
                 visit(Equation::plane(normal, x - center));
                 visit(Equation::distance(within(x - center), within(v), radius));
@@ -293,22 +281,14 @@ pub(super) struct Equation {
 
 impl From<JointEquation> for Equation {
     fn from(equation: JointEquation) -> Self {
-        Self {
-            gradient: equation.gradient,
-            value: equation.value,
-            bend: equation.bend,
-        }
+        Self { gradient: equation.gradient, value: equation.value, bend: equation.bend }
     }
 }
 
 impl Equation {
     /// normal . x = 0
     fn plane(normal: Vector3<f64>, x: Vector3<f64>) -> Self {
-        Self {
-            gradient: normal,
-            value: normal.dot(&x),
-            bend: 0.0,
-        }
+        Self { gradient: normal, value: normal.dot(&x), bend: 0.0 }
     }
 
     /// |x| = radius
@@ -321,11 +301,7 @@ impl Equation {
         } else {
             (Vector3::zeros(), 0.0)
         };
-        Self {
-            gradient,
-            value: distance - radius,
-            bend,
-        }
+        Self { gradient, value: distance - radius, bend }
     }
 }
 
@@ -333,9 +309,7 @@ fn check_different(kind: &str, i: usize, j: usize) -> Result<(), Error> {
     if i != j {
         return Ok(());
     }
-    Err(Error::Invalid(format!(
-        "a {kind} needs two different particles, not {i} twice"
-    )))
+    Err(Error::Invalid(format!("a {kind} needs two different particles, not {i} twice")))
 }
 
 fn finite(what: &str, a: Vector3<f64>) -> Result<(), Error> {
@@ -343,7 +317,5 @@ fn finite(what: &str, a: Vector3<f64>) -> Result<(), Error> {
         return Ok(());
     }
     let [x, y, z] = a.into();
-    Err(Error::Invalid(format!(
-        "{what} must be three finite numbers, not ({x}, {y}, {z})"
-    )))
+    Err(Error::Invalid(format!("{what} must be three finite numbers, not ({x}, {y}, {z})")))
 }

@@ -208,20 +208,10 @@ impl Joint {
                 turned(k).unwrap_or_else(|| (Matrix3::identity(), Vector3::zeros()));
             let anchor = rotation * self.anchors[k];
             let (place, velocity, arm) = match center {
-                Some(i) => (
-                    row(x, n, i) + anchor,
-                    row(v, n, i) + spin.cross(&anchor),
-                    anchor,
-                ),
+                Some(i) => (row(x, n, i) + anchor, row(v, n, i) + spin.cross(&anchor), anchor),
                 None => (anchor, Vector3::zeros(), Vector3::zeros()),
             };
-            Side {
-                place,
-                velocity,
-                arm,
-                spin,
-                axes: rotation * self.axes[k],
-            }
+            Side { place, velocity, arm, spin, axes: rotation * self.axes[k] }
         })
     }
 
@@ -283,11 +273,8 @@ impl Stop {
     /// Returns its equation with these sides. The error is negative between the limits.
     pub(super) fn equation(&self, [own, other]: &[Side; 2]) -> JointEquation {
         let axis = other.axes.column(0).into_owned();
-        let (sign, bound) = if self.is_upper {
-            (1.0, self.limits[1])
-        } else {
-            (-1.0, self.limits[0])
-        };
+        let (sign, bound) =
+            if self.is_upper { (1.0, self.limits[1]) } else { (-1.0, self.limits[0]) };
         let mut equation = match self.joint.kind {
             JointKind::Hinge => {
                 let (spin, lever) = (own.spin - other.spin, axis * self.joint.length);
@@ -352,7 +339,5 @@ pub(super) fn check_restitution(of: &str, restitution: f64) -> Result<(), Error>
     if (0.0..=1.0).contains(&restitution) {
         return Ok(());
     }
-    Err(Error::Invalid(format!(
-        "the restitution of {of} must be from 0 to 1, not {restitution}"
-    )))
+    Err(Error::Invalid(format!("the restitution of {of} must be from 0 to 1, not {restitution}")))
 }

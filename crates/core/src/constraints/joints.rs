@@ -118,10 +118,7 @@ pub(crate) fn nearest(
         for (k, moved) in constraints.moved.iter().enumerate() {
             let change = system.vectors[k];
             let turning = system.turnings[k].as_ref();
-            visit(
-                *moved,
-                turning.map_or(change, |turning| turning.rotation * change),
-            );
+            visit(*moved, turning.map_or(change, |turning| turning.rotation * change));
         }
     });
 }
@@ -138,9 +135,8 @@ fn push(
     target: impl Fn(f64, f64) -> f64 + Sync,
 ) {
     constraints.prepare(system, weight, turning);
-    constraints.build(state, system, ends_hold, |_, _, equation, rate, _| {
-        target(equation.value, rate)
-    });
+    constraints
+        .build(state, system, ends_hold, |_, _, equation, rate, _| target(equation.value, rate));
     system.solve_exactly(|| constraints.pattern());
     system.spread();
 }
@@ -213,12 +209,7 @@ fn one_sided(
     turned: Turned,
 ) -> Option<OneSided> {
     let (value, rate, restitution) = match constraints.all[number] {
-        Constraint::Rope {
-            i,
-            j,
-            length,
-            restitution,
-        } => {
+        Constraint::Rope { i, j, length, restitution } => {
             let (d, w) = (vector(x, i) - vector(x, j), vector(v, i) - vector(v, j));
             (d.norm() - length, d.dot(&w) / d.norm(), restitution)
         }
@@ -228,12 +219,7 @@ fn one_sided(
         }
         _ => return None,
     };
-    Some(OneSided {
-        number,
-        value,
-        rate,
-        restitution,
-    })
+    Some(OneSided { number, value, rate, restitution })
 }
 
 /// Returns the ends of joints that are not held.
@@ -257,8 +243,7 @@ pub(crate) fn beyond(
 ) -> Vec<OneSided> {
     let open = (0..constraints.all.len()).filter(|number| !constraints.holds[*number]);
     let all = open.filter_map(|number| one_sided(constraints, number, state, turned));
-    all.filter(|own| own.value >= -none && own.rate >= 0.0)
-        .collect()
+    all.filter(|own| own.value >= -none && own.rate >= 0.0).collect()
 }
 
 /// Makes ropes at their length taut, and holds joints that are at an end.

@@ -115,11 +115,7 @@ fn effects(constraints: &Constraints, system: &System, impulses: &[Vector3<f64>]
             Some(turning) => [impulse, change].map(|along| turning.rotation * along),
             None => [impulse, change],
         };
-        Pushed {
-            moved: *moved,
-            impulse,
-            change,
-        }
+        Pushed { moved: *moved, impulse, change }
     })
     .collect()
 }
@@ -137,20 +133,12 @@ impl Constraint {
             Self::Joint(joint) => (joint.kind.name(), joint.first, joint.second),
             Self::Stop(stop) => ("limit", stop.joint.first, stop.joint.second),
         };
-        ConstraintName {
-            kind,
-            particle,
-            other,
-        }
+        ConstraintName { kind, particle, other }
     }
 
     /// Returns the error (m) of one of its equations: a rope may be shorter than its length.
     pub(super) fn error(&self, equation: &Equation) -> f64 {
-        if self.is_one_sided() {
-            equation.value.max(0.0)
-        } else {
-            equation.value.abs()
-        }
+        if self.is_one_sided() { equation.value.max(0.0) } else { equation.value.abs() }
     }
 
     /// Returns its own length (m), if it has one.
@@ -204,11 +192,7 @@ impl Constraints {
             let length = constraint.length().unwrap_or(radius);
             let share = self.error_of(number, x, &rotation) / length;
             if worst.is_none_or(|worst| share > worst.share) {
-                worst = Some(Unmet {
-                    number,
-                    constraint: constraint.name(),
-                    share,
-                });
+                worst = Some(Unmet { number, constraint: constraint.name(), share });
             }
         }
         worst

@@ -102,11 +102,7 @@ impl Constraints {
                 turn: body.map_or(0, |(_, k)| place(&mut self.rotations, k, Moved::Body(k))),
             }
         };
-        let nothing = Held {
-            particle: first,
-            place: 0,
-            turn: 0,
-        };
+        let nothing = Held { particle: first, place: 0, turn: 0 };
         self.ends.push([hold(first), second.map_or(nothing, hold)]);
         let (own, owners) = (self.all.len(), &mut self.owners);
         let before = owners.len();
@@ -125,10 +121,8 @@ impl Constraints {
         &self,
         carrier: impl Fn(usize) -> Option<(usize, usize)>,
     ) -> Result<Self, Error> {
-        let mut constraints = Self {
-            baumgarte_frequency: self.baumgarte_frequency,
-            ..Self::default()
-        };
+        let mut constraints =
+            Self { baumgarte_frequency: self.baumgarte_frequency, ..Self::default() };
         for constraint in &self.all {
             constraints.add(constraint, &carrier)?;
         }
@@ -293,13 +287,7 @@ impl Constraints {
         ends_hold: Option<Projected>,
         target: impl Fn(usize, &Row, &Equation, f64, &[Vector3<f64>]) -> f64 + Sync,
     ) {
-        let System {
-            weights,
-            vectors,
-            turnings,
-            rows,
-            ..
-        } = system;
+        let System { weights, vectors, turnings, rows, .. } = system;
         rows.resize_with(self.owners.len(), Row::default);
         each(rows, &|k, row| {
             let (owner, number) = self.owners[k];

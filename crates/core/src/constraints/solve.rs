@@ -110,12 +110,7 @@ impl System {
     /// Finds the multipliers by conjugate residuals, starting from zero, with `softness` added to
     /// the diagonal of A.
     fn iterate(&mut self, softness: f64) {
-        let Self {
-            weights,
-            vectors: u,
-            rows,
-            ..
-        } = self;
+        let Self { weights, vectors: u, rows, .. } = self;
         for row in &mut *rows {
             (row.multiplier, row.residual) = (0.0, row.target);
         }
@@ -211,9 +206,7 @@ impl Pattern {
             }
         }
         let pattern = cholesky::Pattern::new(rows.len(), meeting.iter().copied(), most);
-        Self {
-            meeting: pattern.map(|pattern| (meeting, pattern)),
-        }
+        Self { meeting: pattern.map(|pattern| (meeting, pattern)) }
     }
 }
 
@@ -238,10 +231,7 @@ impl Factor {
         let (meeting, symbolic) = pattern.meeting.as_ref()?;
         Some(Self {
             numbers: cholesky::Factor::new(symbolic)?,
-            places: meeting
-                .iter()
-                .map(|[i, j]| symbolic.place(*i, *j))
-                .collect(),
+            places: meeting.iter().map(|[i, j]| symbolic.place(*i, *j)).collect(),
             pattern: Arc::clone(pattern),
         })
     }
@@ -254,11 +244,7 @@ impl Factor {
     /// Factorises A of these rows, with the inverse masses of all that they move. Returns whether
     /// the rows are independent.
     pub fn factorise(&mut self, rows: &[Row], weights: &[Vector3<f64>]) -> bool {
-        let Self {
-            pattern,
-            numbers,
-            places,
-        } = self;
+        let Self { pattern, numbers, places } = self;
         let Some((meeting, pattern)) = &pattern.meeting else {
             return false;
         };
@@ -360,11 +346,7 @@ impl Row {
     /// mass, no force can have the effect, and the row is left out.
     pub fn set_target(&mut self, target: f64, weights: &[Vector3<f64>]) {
         let diagonal = self.element(self, weights);
-        self.scale = if diagonal > 0.0 {
-            1.0 / diagonal.sqrt()
-        } else {
-            0.0
-        };
+        self.scale = if diagonal > 0.0 { 1.0 / diagonal.sqrt() } else { 0.0 };
         for (_, part) in &mut self.parts[..self.used] {
             *part *= self.scale;
         }

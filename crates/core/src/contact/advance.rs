@@ -134,11 +134,7 @@ pub(super) fn time_and_planes(
         least = plane.apart - (NEAR_SHARE * room).max(2.0 * tolerance);
     }
     let near = least + tolerance + NEAR_SHARE * gap.min(plane.apart - least);
-    let mut search = Search {
-        kind,
-        gaps: [least, near],
-        planes: MAX_PLANES,
-    };
+    let mut search = Search { kind, gaps: [least, near], planes: MAX_PLANES };
     let time = search.first_hit(&from, &moves, plane, MAX_PLANES_OF_PAIR);
     (time, MAX_PLANES - search.planes)
 }
@@ -262,17 +258,12 @@ pub(super) fn are_apart(
         let low = |k: usize| x[k][axis].min(x[k][axis] + u[k][axis]);
         let high = |k: usize| x[k][axis].max(x[k][axis] + u[k][axis]);
         let [first, second] = match kind {
-            PairKind::VertexTriangle => [
-                [0.0; 2],
-                [
-                    low(1).min(low(2)).min(low(3)),
-                    high(1).max(high(2)).max(high(3)),
-                ],
-            ],
-            PairKind::EdgeEdge => [
-                [low(1).min(0.0), high(1).max(0.0)],
-                [low(2).min(low(3)), high(2).max(high(3))],
-            ],
+            PairKind::VertexTriangle => {
+                [[0.0; 2], [low(1).min(low(2)).min(low(3)), high(1).max(high(2)).max(high(3))]]
+            }
+            PairKind::EdgeEdge => {
+                [[low(1).min(0.0), high(1).max(0.0)], [low(2).min(low(3)), high(2).max(high(3))]]
+            }
             PairKind::VertexFloor => return false,
         };
         second[0] - first[1] > gap || first[0] - second[1] > gap
@@ -296,11 +287,7 @@ impl Plane {
     fn between(kind: PairKind, at: &[Vector3<f64>; 4], moves: &[Vector3<f64>; 4]) -> Self {
         let Closest { weights, offset } = closest(kind, at);
         let distance = offset.norm();
-        let normal = if distance > 0.0 {
-            offset / distance
-        } else {
-            Vector3::zeros()
-        };
+        let normal = if distance > 0.0 { offset / distance } else { Vector3::zeros() };
         let along = |[a, b, c, d]: [f64; 4]| match kind {
             PairKind::EdgeEdge => [a - c, a - d, b - c, b - d],
             _ => [a - b, a - c, a - d, a - d],

@@ -51,21 +51,11 @@ impl<'a> Approach<'a> {
             let angle = turn.rate.abs() * h;
             bend += angle * (2.0 * speed + angle * away);
             speed += angle * away;
-            if turn
-                .known_times()
-                .iter()
-                .any(|time| t < *time && *time < t + h)
-            {
+            if turn.known_times().iter().any(|time| t < *time && *time < t + h) {
                 bend = f64::INFINITY;
             }
         }
-        Self {
-            obstacle,
-            course,
-            t,
-            speed,
-            bend,
-        }
+        Self { obstacle, course, t, speed, bend }
     }
 
     /// Returns the position (m) of the particle at a share of the step, in the obstacle's own
@@ -108,18 +98,11 @@ impl<'a> Approach<'a> {
     pub fn flight(&self, least: impl Fn(f64) -> f64) -> Option<f64> {
         let begun = self.separation(0.0);
         let pose = self.begun();
-        let (normal, away) = (
-            pose.outwards(begun.normal),
-            self.course.x[0] - pose.place.position,
-        );
+        let (normal, away) = (pose.outwards(begun.normal), self.course.x[0] - pose.place.position);
         let rise = normal.dot(&(self.course.v[0] - velocity(&pose, away))) * self.course.h;
         let fall = -normal.dot(&self.course.bend());
         let least = least(fall);
-        let crest = if fall > rise.abs() {
-            rise / fall
-        } else {
-            rise.signum()
-        };
+        let crest = if fall > rise.abs() { rise / fall } else { rise.signum() };
         let height = begun.distance.max(0.0);
         if height + 0.5 * rise * crest <= least {
             return None;
@@ -216,16 +199,10 @@ impl Course {
     pub fn bounds(&self) -> [f64; 2] {
         // Control points of the polynomial's Bézier form, which stays within their convex hull.
         let [a, d] = self.x;
-        let [b, c] = [
-            a + self.v[0] * (self.h / 3.0),
-            d - self.v[1] * (self.h / 3.0),
-        ];
+        let [b, c] = [a + self.v[0] * (self.h / 3.0), d - self.v[1] * (self.h / 3.0)];
         let speeds = [b - a, c - b, d - c].map(|way| 3.0 * way.norm());
         let bends = [a - 2.0 * b + c, b - 2.0 * c + d].map(|way| 6.0 * way.norm());
-        [
-            speeds.into_iter().fold(0.0, f64::max),
-            bends.into_iter().fold(0.0, f64::max),
-        ]
+        [speeds.into_iter().fold(0.0, f64::max), bends.into_iter().fold(0.0, f64::max)]
     }
 
     /// Returns the second derivative of the position with respect to the share of the step at its

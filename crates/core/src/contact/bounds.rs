@@ -92,11 +92,8 @@ impl WithSimd for Bounding<'_> {
         for part in 0..LANES / S::F64_LANES {
             let x = load_all(simd, &block.x, part);
             let v = load_all(simd, &block.v, part);
-            let normal = if kind == PairKind::EdgeEdge {
-                between_edges(&x)
-            } else {
-                from_triangle(&x)
-            };
+            let normal =
+                if kind == PairKind::EdgeEdge { between_edges(&x) } else { from_triangle(&x) };
             apart(kind, &x, normal).store(&mut block.distance, part);
             let closing = Lanes::splat(simd, 0.0) - apart(kind, &v, normal);
             closing.store(&mut block.closing, part);
@@ -134,11 +131,7 @@ fn all<S: Simd>(simd: S, [a, b, c]: [S::m64s; 3]) -> S::m64s {
 /// Returns the first numbers in the lanes of a mask, and the others elsewhere.
 #[inline(always)]
 fn choose<S: Simd>(mask: S::m64s, [a, b, c]: [Lanes<S>; 3], other: [Lanes<S>; 3]) -> [Lanes<S>; 3] {
-    [
-        a.where_or(mask, other[0]),
-        b.where_or(mask, other[1]),
-        c.where_or(mask, other[2]),
-    ]
+    [a.where_or(mask, other[0]), b.where_or(mask, other[1]), c.where_or(mask, other[2])]
 }
 
 /// Returns a share of an edge, within its ends.
@@ -159,11 +152,7 @@ fn over<S: Simd>(x: Lanes<S>, y: Lanes<S>) -> Lanes<S> {
 /// Reads vectors number `part` of a point.
 #[inline(always)]
 fn load<S: Simd>(simd: S, [x, y, z]: &[[f64; LANES]; 3], part: usize) -> [Lanes<S>; 3] {
-    [
-        Lanes::load(simd, x, part),
-        Lanes::load(simd, y, part),
-        Lanes::load(simd, z, part),
-    ]
+    [Lanes::load(simd, x, part), Lanes::load(simd, y, part), Lanes::load(simd, z, part)]
 }
 
 /// Reads vectors number `part` of all four points.
@@ -173,12 +162,7 @@ fn load_all<S: Simd>(
     [a, b, c, d]: &Points<[f64; LANES]>,
     part: usize,
 ) -> Points<Lanes<S>> {
-    [
-        load(simd, a, part),
-        load(simd, b, part),
-        load(simd, c, part),
-        load(simd, d, part),
-    ]
+    [load(simd, a, part), load(simd, b, part), load(simd, c, part), load(simd, d, part)]
 }
 
 /// Returns the distance, along the normal, between the planes through the nearest points of both
@@ -186,17 +170,8 @@ fn load_all<S: Simd>(
 #[inline(always)]
 fn apart<S: Simd>(kind: PairKind, points: &Points<Lanes<S>>, normal: [Lanes<S>; 3]) -> Lanes<S> {
     let [a, b, c, d] = *points;
-    let [a, b, c, d] = [
-        dot(a, normal),
-        dot(b, normal),
-        dot(c, normal),
-        dot(d, normal),
-    ];
-    if kind == PairKind::EdgeEdge {
-        a.least(b) - c.most(d)
-    } else {
-        a - b.most(c).most(d)
-    }
+    let [a, b, c, d] = [dot(a, normal), dot(b, normal), dot(c, normal), dot(d, normal)];
+    if kind == PairKind::EdgeEdge { a.least(b) - c.most(d) } else { a - b.most(c).most(d) }
 }
 
 /// Returns the direction from the nearest point of a triangle to a vertex (Ericson, *Real-Time
@@ -215,10 +190,7 @@ fn from_triangle<S: Simd>(points: &Points<Lanes<S>>) -> [Lanes<S>; 3] {
     // The shares of b and c in the nearest point, over a common denominator: inside first, and then
     // each edge and corner whose region holds the vertex.
     let (to_c, to_b) = (d4 - d3, d5 - d6);
-    let is_bc = all(
-        simd,
-        [va.at_most(zero), zero.at_most(to_c), zero.at_most(to_b)],
-    );
+    let is_bc = all(simd, [va.at_most(zero), zero.at_most(to_c), zero.at_most(to_b)]);
     let is_ca = all(simd, [vb.at_most(zero), zero.at_most(d2), d6.at_most(zero)]);
     let is_c = simd.and_m64s(zero.at_most(d6), d5.at_most(d6));
     let is_ab = all(simd, [vc.at_most(zero), zero.at_most(d1), d3.at_most(zero)]);
@@ -256,11 +228,7 @@ fn between_edges<S: Simd>(points: &Points<Lanes<S>>) -> [Lanes<S>; 3] {
     let to_first = times(first, on_first);
     let to_second = times(second, on_second);
     let offset = minus(between, to_second);
-    unit([
-        offset[0] + to_first[0],
-        offset[1] + to_first[1],
-        offset[2] + to_first[2],
-    ])
+    unit([offset[0] + to_first[0], offset[1] + to_first[1], offset[2] + to_first[2]])
 }
 
 #[cfg(test)]
@@ -293,9 +261,7 @@ mod tests {
         let mut exact = 0;
         for kind in [PairKind::VertexTriangle, PairKind::EdgeEdge] {
             for _ in 0..4000 {
-                let all: Vec<_> = (0..LANES)
-                    .flat_map(|_| random_points(&mut random))
-                    .collect();
+                let all: Vec<_> = (0..LANES).flat_map(|_| random_points(&mut random)).collect();
                 let speeds: Vec<_> = (0..4 * LANES)
                     .map(|_| Vector3::from_fn(|_, _| random.between(-1.0, 1.0)))
                     .collect();

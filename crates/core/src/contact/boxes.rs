@@ -113,10 +113,7 @@ struct Block {
 
 impl Block {
     fn new() -> Self {
-        Self {
-            low: [[[f32::INFINITY; LANES]; 3]; 2],
-            high: [[[f32::NEG_INFINITY; LANES]; 3]; 2],
-        }
+        Self { low: [[[f32::INFINITY; LANES]; 3]; 2], high: [[[f32::NEG_INFINITY; LANES]; 3]; 2] }
     }
 
     #[inline(always)]
@@ -268,9 +265,7 @@ impl Tree {
         primitives: impl Iterator<Item = [u32; N]>,
         around: &[Bounds],
     ) {
-        let hulls: Vec<_> = primitives
-            .map(|points| around[points[0] as usize].hull())
-            .collect();
+        let hulls: Vec<_> = primitives.map(|points| around[points[0] as usize].hull()).collect();
         let whole = hulls.iter().copied().reduce(|a, b| a.with(&b));
         let along = |hull: &Aabb| whole.as_ref().map_or(0, |whole| whole.place_of(hull));
         let keys: Vec<u64> = hulls.iter().map(along).collect();
@@ -333,8 +328,7 @@ impl Tree {
 
     fn changed_blocks(&self) -> impl Iterator<Item = u32> {
         let all = self.changed.iter().enumerate();
-        all.filter(|(_, changed)| **changed != 0)
-            .map(|(s, _)| s as u32)
+        all.filter(|(_, changed)| **changed != 0).map(|(s, _)| s as u32)
     }
 }
 

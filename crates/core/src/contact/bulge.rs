@@ -45,10 +45,7 @@ impl Around {
         let start = [low, high].map(Vector3::repeat);
         let [low, high] = places.fold(start, |[low, high], x| [low.inf(&x), high.sup(&x)]);
         let reach = Vector3::repeat(reach);
-        Self {
-            low: low - reach,
-            high: high + reach,
-        }
+        Self { low: low - reach, high: high + reach }
     }
 
     /// Returns the box around an obstacle between two times (s): a floor is all that is below it.
@@ -90,11 +87,7 @@ pub(crate) fn bulge(
         let (before, after) = (&mut motion.v0.points, &mut motion.v.points);
         surface.speeds(obstacles, t, &y0[half..2 * half], before);
         surface.speeds(obstacles, t + h, &y1[half..2 * half], after);
-        let courses = Courses {
-            x: [begins, ends],
-            v: [before, after],
-            h,
-        };
+        let courses = Courses { x: [begins, ends], v: [before, after], h };
         let obstacles: Vec<_> = (obstacles.iter().map(|it| Around::of(it, [t, t + h]))).collect();
         let rigid = rigid_near(surface, &obstacles, &courses);
         let soft = soft.chain(&surface.drops.vertices).map(|i| *i as usize);
@@ -102,11 +95,7 @@ pub(crate) fn bulge(
         let counted: Vec<_> = rigid.into_iter().chain(soft).collect();
         let turning = surface.obstacles.vertices.iter().map(|i| *i as usize);
         let turning = turning.filter(|_| !counted.is_empty());
-        let strays = counted
-            .iter()
-            .copied()
-            .chain(turning)
-            .map(|i| courses.stray(i));
+        let strays = counted.iter().copied().chain(turning).map(|i| courses.stray(i));
         strays.fold(0.0, f64::max)
     });
     bulge / surface.least_thickness()

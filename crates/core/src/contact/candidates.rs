@@ -139,11 +139,8 @@ impl Candidates {
         if (is_ahead || first == last) && self.base.len() == stretch.ends[0].len() {
             // Courses have no time of their own. Beyond their end, an instant is compared with them
             // where they were used last: it often is the beginning of the next step.
-            self.since = if is_ahead {
-                stretch.times.map(|t| t - self.begin)
-            } else {
-                [self.since[1]; 2]
-            };
+            self.since =
+                if is_ahead { stretch.times.map(|t| t - self.begin) } else { [self.since[1]; 2] };
             self.measure(stretch);
             if self.farthest <= self.margin || self.renew(surface, stretch) {
                 return;
@@ -161,12 +158,7 @@ impl Candidates {
         let [first, last] = self.since;
         let [from, to] = stretch.ends;
         let is_point = std::ptr::eq(from, to) && first == last;
-        let Self {
-            base,
-            speeds,
-            travel,
-            ..
-        } = self;
+        let Self { base, speeds, travel, .. } = self;
         let astray = |x: &[Vector3<f64>], since: f64, i: usize| x[i] - base[i] - speeds[i] * since;
         let count = base.len();
         let mean = |x: &[Vector3<f64>], since: f64| {
@@ -195,8 +187,7 @@ impl Candidates {
     fn renew(&mut self, surface: &Surface, stretch: &Stretch) -> bool {
         let stray = STRAY_SHARE * self.margin;
         self.renewed.clear();
-        self.renewed
-            .extend(self.travel.iter().map(|travel| *travel > stray));
+        self.renewed.extend(self.travel.iter().map(|travel| *travel > stray));
         let count = self.renewed.iter().filter(|is_new| **is_new).count();
         if count * VERTICES_PER_RENEWED > self.base.len() {
             return false;
@@ -220,8 +211,7 @@ impl Candidates {
         let from = stretch.ends[0];
         let duration = stretch.times[1] - stretch.times[0];
         self.speeds.clear();
-        self.speeds
-            .extend((0..from.len()).map(|i| stretch.speed(i)));
+        self.speeds.extend((0..from.len()).map(|i| stretch.speed(i)));
         let before = if duration > 0.0 { 0.0 } else { self.back };
         self.begin = stretch.times[0] - before;
         self.base.clear();
@@ -253,8 +243,7 @@ impl Candidates {
             reach: 2.0 * self.margin,
         };
         let renewed = some.then_some(&self.renewed[..]);
-        self.listing
-            .list(surface, &course, renewed, self.parallel, &mut self.pairs);
+        self.listing.list(surface, &course, renewed, self.parallel, &mut self.pairs);
     }
 
     /// Returns whether a pair may come nearer than its thickness and a gap (m) in the stretch
@@ -267,10 +256,7 @@ impl Candidates {
     /// Returns the pairs, in canonical order, that may come nearer than their thickness and a gap
     /// (m), which is at most 0, in the stretch covered last.
     pub fn near(&self, gap: f64) -> impl Iterator<Item = &Candidate> {
-        let near = self
-            .pairs
-            .iter()
-            .filter(move |pair| self.is_near(pair, gap));
+        let near = self.pairs.iter().filter(move |pair| self.is_near(pair, gap));
         near.map(|pair| &pair.candidate)
     }
 
@@ -338,11 +324,7 @@ impl Linear<'_> {
             block.set(count, pair.points, self.x, self.moves);
             members[count] = Some((pair, distance));
             count += 1;
-            if count < LANES
-                && wanted
-                    .peek()
-                    .is_some_and(|(next, _)| next.kind == pair.kind)
-            {
+            if count < LANES && wanted.peek().is_some_and(|(next, _)| next.kind == pair.kind) {
                 continue;
             }
             block.bound(pair.kind);

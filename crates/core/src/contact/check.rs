@@ -71,9 +71,7 @@ pub fn crossed(layer: &ContactLayer, t: f64, x: &[f64]) -> Vec<Crossed> {
     let surface = layer.surface();
     let n = surface.particles();
     assert_eq!(x.len(), 3 * n, "x has three numbers for each particle");
-    layer
-        .scratch
-        .lend(|buffers| crossed_with(layer, buffers, t, x))
+    layer.scratch.lend(|buffers| crossed_with(layer, buffers, t, x))
 }
 
 /// Returns whether too many primitives of a thickness (m) are close together at time t (s), with
@@ -85,11 +83,7 @@ pub(crate) fn is_crowded(layer: &ContactLayer, t: f64, x: &[f64], thickness: f64
     let around = |corners: &[u32; 3]| {
         Aabb::around(corners.map(|i| places[i as usize])).grown(0.5 * thickness)
     };
-    let corners = surface
-        .bodies
-        .corners
-        .iter()
-        .chain(&surface.obstacles.corners);
+    let corners = surface.bodies.corners.iter().chain(&surface.obstacles.corners);
     let boxes: Vec<_> = corners.map(around).collect();
     let most = MAX_PAIRS.max(MAX_PAIRS_PER_BOX * boxes.len());
     let mut pairs = 0;
@@ -116,10 +110,7 @@ fn crossed_with(layer: &ContactLayer, buffers: &mut Buffers, t: f64, x: &[f64]) 
             points.dedup();
             name(&points)
         };
-        Crossed {
-            first: of(first),
-            second: of(second),
-        }
+        Crossed { first: of(first), second: of(second) }
     });
     exact.chain(inside).collect()
 }
@@ -136,11 +127,7 @@ pub(super) fn meetings(
 ) -> (Vec<Crossing>, Vec<Candidate>) {
     let surface = layer.surface();
     let n = surface.particles();
-    let Buffers {
-        candidates,
-        x: places,
-        ..
-    } = buffers;
+    let Buffers { candidates, x: places, .. } = buffers;
     surface.place(layer.obstacles(), t, x, places);
     let counts = |crossing: &Crossing| {
         let (edge, triangle) = (edges[crossing.edge], triangles[crossing.triangle]);
@@ -150,11 +137,7 @@ pub(super) fn meetings(
     };
     let mut exact = crossings(x, &places[n..], triangles, edges);
     exact.retain(counts);
-    let stretch = Stretch {
-        times: [t; 2],
-        ends: [places; 2],
-        speeds: None,
-    };
+    let stretch = Stretch { times: [t; 2], ends: [places; 2], speeds: None };
     candidates.cover(surface, &stretch);
     let is_inside = |pair: &&Candidate| {
         let (x, radius) = (pair.of(places), surface.radii(pair.kind, &pair.points));
@@ -268,12 +251,8 @@ fn edges_meet([p, q]: [Vector3<f64>; 2], [a, b]: [Vector3<f64>; 2]) -> bool {
     // They lie in one plane: project along an axis that is not in it. If there is none, they lie on
     // one line.
     for axis in 0..3 {
-        let [a, b, p, q] = [
-            turn(axis, p, q, a),
-            turn(axis, p, q, b),
-            turn(axis, a, b, p),
-            turn(axis, a, b, q),
-        ];
+        let [a, b, p, q] =
+            [turn(axis, p, q, a), turn(axis, p, q, b), turn(axis, a, b, p), turn(axis, a, b, q)];
         if a != 0.0 || b != 0.0 || p != 0.0 || q != 0.0 {
             return a * b <= 0.0 && p * q <= 0.0;
         }
@@ -285,20 +264,13 @@ fn edges_meet([p, q]: [Vector3<f64>; 2], [a, b]: [Vector3<f64>; 2]) -> bool {
 
 /// Returns the sign of the volume of a tetrahedron: exactly -1, 0 or 1.
 fn side(a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>, d: Vector3<f64>) -> f64 {
-    let at = |x: Vector3<f64>| Coord3D {
-        x: x.x,
-        y: x.y,
-        z: x.z,
-    };
+    let at = |x: Vector3<f64>| Coord3D { x: x.x, y: x.y, z: x.z };
     sign(orient3d(at(a), at(b), at(c), at(d)))
 }
 
 /// Returns the sign of the area of a triangle seen along an axis: exactly -1, 0 or 1.
 fn turn(axis: usize, a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> f64 {
-    let at = |x: Vector3<f64>| Coord {
-        x: x[(axis + 1) % 3],
-        y: x[(axis + 2) % 3],
-    };
+    let at = |x: Vector3<f64>| Coord { x: x[(axis + 1) % 3], y: x[(axis + 2) % 3] };
     sign(orient2d(at(a), at(b), at(c)))
 }
 

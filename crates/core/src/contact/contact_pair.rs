@@ -192,9 +192,7 @@ impl ContactPair {
     /// for velocities), and the largest one; none if the contact does not resist turns.
     pub fn turning(&self, field: &Field, span: f64) -> Option<(Vector3<f64>, f64)> {
         let rolling = self.directed.as_ref()?.rolling.as_ref()?;
-        let turned = self
-            .arms()
-            .fold(rolling.obstacle * span, |sum, arm| sum + arm.turn(field));
+        let turned = self.arms().fold(rolling.obstacle * span, |sum, arm| sum + arm.turn(field));
         Some((-(rolling.inertia * turned), rolling.most))
     }
 
@@ -208,8 +206,7 @@ impl ContactPair {
     /// Returns the relative vector of the closest points.
     pub fn relative(&self, field: &Field) -> Vector3<f64> {
         let relative = weighted(&self.weights, &self.points.map(|i| field[i as usize]));
-        self.arms()
-            .fold(relative, |sum, arm| sum + arm.beyond_points(field))
+        self.arms().fold(relative, |sum, arm| sum + arm.beyond_points(field))
     }
 
     /// Returns the arms at rigid bodies.
@@ -321,11 +318,7 @@ impl ContactPair {
             return Vector3::zeros();
         }
         if self.is_rigid() {
-            let least = Least {
-                before: Vector3::zeros(),
-                speed: wanted,
-                friction,
-            };
+            let least = Least { before: Vector3::zeros(), speed: wanted, friction };
             return self.press(Vector3::zeros(), &least, inverse_masses, field);
         }
         let change = change_in_impact(relative, self.normal, 0.0, friction);

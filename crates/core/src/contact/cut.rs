@@ -139,11 +139,7 @@ impl Cuts {
         let kinematic = pair.points.map(|i| motion.is_kinematic(surface, i));
         let first = pair.kind.first();
         // Number of points that count: a floor has one.
-        let last = if pair.kind == PairKind::VertexFloor {
-            2
-        } else {
-            4
-        };
+        let last = if pair.kind == PairKind::VertexFloor { 2 } else { 4 };
         let near = closest(pair.kind, &x);
         let distance = near.offset.norm();
         let normal = near.offset / distance;
@@ -182,11 +178,7 @@ impl Cuts {
             }
             let (at, by) = (x[k].dot(&normal), moves[k].dot(&normal));
             let end = if k < first { first_end } else { second_end };
-            let passes = if k < first {
-                at + by < end
-            } else {
-                at + by > end
-            };
+            let passes = if k < first { at + by < end } else { at + by > end };
             if passes && by != 0.0 {
                 let share = ((end - at) / by).clamp(0.0, 1.0) * (1.0 - 1e-12);
                 let i = pair.points[k] as usize;

@@ -66,11 +66,7 @@ pub(super) fn apply_friction(
         (contact.inverse_mass > 0.0).then_some((contact, most, spin))
     };
     let mut pressed = Pressed::default();
-    let ended = Linear {
-        x: motion.ends(),
-        moves: None,
-        rounding: surface.rounding(),
-    };
+    let ended = Linear { x: motion.ends(), moves: None, rounding: surface.rounding() };
     let found = |(contact, most, spin)| pressed.add(contact, most, spin);
     surface.each_bare(candidates, &ended, &motion.v, find, found);
     if pressed.contacts.is_empty() {
@@ -115,26 +111,13 @@ impl Pressed {
 /// Displacements follow the velocities, and vanish where these do.
 fn solve(pressed: &Pressed, h: f64, motion: &mut Motion, guarded: &mut Guarded) {
     let (pressed, spins) = (&pressed.contacts, &pressed.spins);
-    let Motion {
-        x0,
-        moves,
-        v0,
-        v,
-        inverse_masses,
-        solids,
-        impulses,
-        ..
-    } = motion;
+    let Motion { x0, moves, v0, v, inverse_masses, solids, impulses, .. } = motion;
     // Displacement per change of velocity in the step: half of the step for most methods, all of it
     // for implicit Euler.
     let delay = |begun: Vector3<f64>, end: Vector3<f64>, way: Vector3<f64>| {
         let (change, way) = (end - begun, way - begun * h);
         let squared = change.norm_squared();
-        if squared > 0.0 {
-            (way.dot(&change) / squared).clamp(0.0, h)
-        } else {
-            0.5 * h
-        }
+        if squared > 0.0 { (way.dot(&change) / squared).clamp(0.0, h) } else { 0.5 * h }
     };
     let turn = |contact: &ContactPair, field: &Field, span: f64| {
         let turning = contact.turning(field, span);
@@ -172,11 +155,7 @@ fn solve(pressed: &Pressed, h: f64, motion: &mut Motion, guarded: &mut Guarded) 
         let turning = contact.turning(v, 1.0);
         turning.is_some_and(|(impulse, most)| impulse.norm() <= STUCK_TOLERANCE * most)
     };
-    let resting: Vec<_> = pressed
-        .iter()
-        .map(|(contact, _)| contact)
-        .filter(rests)
-        .collect();
+    let resting: Vec<_> = pressed.iter().map(|(contact, _)| contact).filter(rests).collect();
     pass_until_still(|| {
         let mut still = true;
         for contact in &resting {
@@ -261,20 +240,13 @@ pub(super) fn hold(
     let mut all = vec![Vector3::zeros(); contacts.len()];
     let mut turned = all.clone();
     let numbers = in_order(contacts, inverse_masses);
-    let mut soft: Vec<_> = numbers
-        .iter()
-        .map(|number| Soft::new(&contacts[*number], inverse_masses))
-        .collect();
-    let rigid: Vec<_> = (0..contacts.len())
-        .filter(|k| contacts[*k].0.is_rigid())
-        .collect();
+    let mut soft: Vec<_> =
+        numbers.iter().map(|number| Soft::new(&contacts[*number], inverse_masses)).collect();
+    let rigid: Vec<_> = (0..contacts.len()).filter(|k| contacts[*k].0.is_rigid()).collect();
     pass_until_still(|| {
         let points = &mut v.points;
 
-        let mut still = Arch::new().dispatch(Pass {
-            contacts: &mut soft,
-            v: points,
-        });
+        let mut still = Arch::new().dispatch(Pass { contacts: &mut soft, v: points });
         for k in &rigid {
             let (contact, most) = &contacts[*k];
             let slip = contact.slip(v);
@@ -373,11 +345,8 @@ impl WithSimd for Pass<'_> {
             let wanted = contact.held - slip * contact.mass;
             let most = contact.most;
             let squared = wanted.norm_squared();
-            let held = if squared > most * most {
-                wanted * (most / squared.sqrt())
-            } else {
-                wanted
-            };
+            let held =
+                if squared > most * most { wanted * (most / squared.sqrt()) } else { wanted };
             let change = held - contact.held;
             contact.held = held;
             let least = STUCK_TOLERANCE * most;

@@ -74,41 +74,19 @@ fn guard_with(
 ) -> Result<Guarded, Pinched> {
     let surface = layer.surface();
     let half = 3 * surface.particles();
-    let Buffers {
-        candidates,
-        motion,
-        cuts,
-        ..
-    } = buffers;
+    let Buffers { candidates, motion, cuts, .. } = buffers;
     motion.times = [t, t + h];
     surface.place(layer.obstacles(), t, &y0[..half], &mut motion.x0);
-    surface.place(
-        layer.obstacles(),
-        t + h,
-        &y1[..half],
-        &mut motion.moves.points,
-    );
+    surface.place(layer.obstacles(), t + h, &y1[..half], &mut motion.moves.points);
     for (end, start) in motion.moves.points.iter_mut().zip(&motion.x0) {
         *end -= start;
     }
-    surface.speeds(
-        layer.obstacles(),
-        t + h,
-        &y1[half..2 * half],
-        &mut motion.v.points,
-    );
+    surface.speeds(layer.obstacles(), t + h, &y1[half..2 * half], &mut motion.v.points);
     if surface.is_rough() || surface.is_rigid_or_elastic() {
-        surface.speeds(
-            layer.obstacles(),
-            t,
-            &y0[half..2 * half],
-            &mut motion.v0.points,
-        );
+        surface.speeds(layer.obstacles(), t, &y0[half..2 * half], &mut motion.v0.points);
     }
     motion.inverse_masses.clear();
-    motion
-        .inverse_masses
-        .extend_from_slice(bodies.inverse_masses);
+    motion.inverse_masses.extend_from_slice(bodies.inverse_masses);
     motion.inverse_masses.resize(motion.x0.len(), 0.0);
     motion.read_solids(surface, [y0, y1]);
     motion.spins.clear();
@@ -121,13 +99,7 @@ fn guard_with(
     motion.cover(surface, candidates);
     let mut changed = apply_friction(surface, h, candidates, motion, &mut guarded);
     if surface.is_rigid_or_elastic() {
-        let Motion {
-            flight,
-            v0,
-            v,
-            moves,
-            ..
-        } = motion;
+        let Motion { flight, v0, v, moves, .. } = motion;
         flight.read(h, bodies.may_lag, [v0, v, moves]);
         if bodies.are_struck {
             flight.straighten();
@@ -228,10 +200,7 @@ fn push(
         time = on_line;
     }
     let mut touch = contact_at(surface, candidate, time, motion);
-    if touch
-        .as_ref()
-        .is_some_and(|contact| contact.parts(&motion.moves))
-    {
+    if touch.as_ref().is_some_and(|contact| contact.parts(&motion.moves)) {
         let Some(next) = motion.impact_after(surface, candidate, time) else {
             return;
         };
@@ -247,14 +216,7 @@ fn push(
     };
     let friction = law.skin.friction;
     let turning = motion.turning(surface, candidate);
-    let Motion {
-        moves,
-        v,
-        inverse_masses,
-        solids,
-        impulses,
-        ..
-    } = motion;
+    let Motion { moves, v, inverse_masses, solids, impulses, .. } = motion;
     let by_move = contact.stop(friction, contact.wanted, inverse_masses, moves);
     let by_speed = contact.stop(friction, 0.0, inverse_masses, v);
     for k in contact.solids() {

@@ -45,13 +45,7 @@ pub(super) struct Blow {
 impl Blow {
     /// Creates a blow without an impulse yet.
     pub fn new(contact: ContactPair, least: Least, is_free: bool, carried: Vector3<f64>) -> Self {
-        Self {
-            contact,
-            least,
-            is_free,
-            carried,
-            impulse: Vector3::zeros(),
-        }
+        Self { contact, least, is_free, carried, impulse: Vector3::zeros() }
     }
 
     /// Changes the impulse so that the sides separate as fast as they have to, with friction.
@@ -111,9 +105,8 @@ pub(super) fn solve<'a>(
         ties.iter_mut().for_each(Tie::slacken);
         sweep((&mut blows, ties), changes, (inverse_masses, solids));
         let works = blows.iter().map(|blow| blow.work(changes));
-        let (sum, size) = works.fold((0.0, 0.0), |(sum, size), work: f64| {
-            (sum + work, size + work.abs())
-        });
+        let (sum, size) =
+            works.fold((0.0, 0.0), |(sum, size), work: f64| (sum + work, size + work.abs()));
         let may_gain = blows.iter().any(|blow| blow.is_free);
         may_gain && sum > ROUNDING * size
     };
@@ -123,11 +116,7 @@ pub(super) fn solve<'a>(
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
-        *(if gains(middle, changes) {
-            &mut high
-        } else {
-            &mut low
-        }) = middle;
+        *(if gains(middle, changes) { &mut high } else { &mut low }) = middle;
     }
     gains(low, changes);
 }
@@ -245,16 +234,8 @@ impl Impact {
             contact.wanted =
                 restored(&law, distance) - (1.0 - time) * approach + MARGIN_SHARE * approach.abs();
         }
-        let least = Least {
-            before,
-            speed,
-            friction: law.skin.friction,
-        };
-        Some(Self {
-            candidate: *pair,
-            blow: Blow::new(contact, least, is_free, carried),
-            left,
-        })
+        let least = Least { before, speed, friction: law.skin.friction };
+        Some(Self { candidate: *pair, blow: Blow::new(contact, least, is_free, carried), left })
     }
 
     /// Lets constraints pass impulses on, if they hold something that is struck.
@@ -277,17 +258,12 @@ impl Impact {
 
     /// Changes the motion by the impulse.
     pub fn apply(&self, changes: &Field, h: f64, motion: &mut Motion) {
-        let Blow {
-            contact, impulse, ..
-        } = &self.blow;
+        let Blow { contact, impulse, .. } = &self.blow;
         let changed = contact.relative(changes).dot(&contact.normal);
         // A pair that does not rebound stays where it touched; for others, the course from there on
         // is new.
-        let span = if self.blow.is_free {
-            self.left
-        } else {
-            (contact.wanted / changed).clamp(0.0, h)
-        };
+        let span =
+            if self.blow.is_free { self.left } else { (contact.wanted / changed).clamp(0.0, h) };
         let impulse = *impulse;
         let (points, weights) = (contact.points, contact.weights);
         motion.impulses.share(points, weights, impulse);

@@ -82,11 +82,7 @@ pub(super) fn across(a: Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
 /// Limits a slip to the length `most`.
 pub(super) fn limited_to(slip: Vector3<f64>, most: f64) -> Vector3<f64> {
     let length = slip.norm();
-    if length > most {
-        slip * (most / length)
-    } else {
-        slip
-    }
+    if length > most { slip * (most / length) } else { slip }
 }
 
 /// Returns the impulse of Coulomb friction (N s) across a unit normal, of at most `most`, where a
@@ -121,11 +117,7 @@ pub(super) fn friction(
         let along = |k: usize| {
             let all = mobilities[k] + resistance;
             // Constraints may leave it no way to move there.
-            if all > ROUNDING * mobilities[0] {
-                -slips[k] / all
-            } else {
-                0.0
-            }
+            if all > ROUNDING * mobilities[0] { -slips[k] / all } else { 0.0 }
         };
         [along(0), along(1)]
     };
@@ -154,11 +146,7 @@ pub(super) fn friction(
 /// Returns the shortest time (s) in which a rebound comes back under an acceleration `press` (m/s2)
 /// towards the surface: `time`, or that from a height (m), below which rebounds are left out.
 pub(crate) fn shortest_rebound(press: f64, [height, time]: [f64; 2]) -> f64 {
-    if press > 0.0 {
-        (8.0 * height / press).sqrt().max(time)
-    } else {
-        time
-    }
+    if press > 0.0 { (8.0 * height / press).sqrt().max(time) } else { time }
 }
 
 /// Returns the speed (m/s) away from a surface after an impact at the speed `approach` (m/s).
@@ -168,9 +156,5 @@ pub(crate) fn shortest_rebound(press: f64, [height, time]: [f64; 2]) -> f64 {
 /// so a sequence of ever shorter rebounds ends, and a particle at rest is not thrown up.
 pub(crate) fn rebound_speed(restitution: f64, approach: f64, press: f64, shortest: f64) -> f64 {
     let speed = restitution * approach.max(0.0);
-    if 2.0 * speed > press * shortest {
-        speed
-    } else {
-        0.0
-    }
+    if 2.0 * speed > press * shortest { speed } else { 0.0 }
 }

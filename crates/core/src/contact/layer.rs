@@ -34,11 +34,7 @@ impl ContactLayer {
     /// Creates the contact of a surface that was made with these obstacles.
     #[must_use]
     pub fn new(surface: Surface, obstacles: Vec<Obstacle>) -> Self {
-        Self {
-            surface,
-            obstacles,
-            scratch: Scratch::default(),
-        }
+        Self { surface, obstacles, scratch: Scratch::default() }
     }
 
     /// Returns the surface of the bodies and obstacles that can touch.
@@ -68,8 +64,7 @@ impl ContactLayer {
         find: impl Fn(&Candidate, &Pair) -> Option<R> + Sync,
         visit: impl FnMut(R),
     ) {
-        self.scratch
-            .lend(|buffers| self.visit_with(buffers, (t, x, v), find, visit));
+        self.scratch.lend(|buffers| self.visit_with(buffers, (t, x, v), find, visit));
     }
 
     fn visit_with<R: Send>(
@@ -79,31 +74,17 @@ impl ContactLayer {
         find: impl Fn(&Candidate, &Pair) -> Option<R> + Sync,
         visit: impl FnMut(R),
     ) {
-        let Buffers {
-            candidates,
-            x: places,
-            v: speeds,
-            ..
-        } = buffers;
+        let Buffers { candidates, x: places, v: speeds, .. } = buffers;
         self.surface.place(&self.obstacles, t, x, places);
         speeds.clear();
         match v {
             Some(v) => self.surface.speeds(&self.obstacles, t, v, speeds),
             None => speeds.resize(places.len(), Vector3::zeros()),
         }
-        let stretch = Stretch {
-            times: [t; 2],
-            ends: [places; 2],
-            speeds: Some(speeds),
-        };
+        let stretch = Stretch { times: [t; 2], ends: [places; 2], speeds: Some(speeds) };
         candidates.cover(&self.surface, &stretch);
-        let still = Linear {
-            x: places,
-            moves: None,
-            rounding: self.surface.rounding(),
-        };
-        self.surface
-            .each_bare(candidates, &still, speeds, find, visit);
+        let still = Linear { x: places, moves: None, rounding: self.surface.rounding() };
+        self.surface.each_bare(candidates, &still, speeds, find, visit);
     }
 
     /// Adds the forces (N) at time t (s) in the state (x, v) to f.
@@ -171,11 +152,7 @@ impl ContactLayer {
 /// Returns row i of an n x 3 matrix, or zero for a vertex of an obstacle.
 fn row(a: &[f64], i: u32) -> Vector3<f64> {
     let (n, i) = (a.len() / 3, i as usize);
-    if i < n {
-        Vector3::new(a[i], a[n + i], a[2 * n + i])
-    } else {
-        Vector3::zeros()
-    }
+    if i < n { Vector3::new(a[i], a[n + i], a[2 * n + i]) } else { Vector3::zeros() }
 }
 
 /// Adds vectors to the rows of an n x 3 matrix, except to those of obstacles.

@@ -104,12 +104,7 @@ impl Listing {
     ) {
         let (bodies, obstacles) = (&surface.bodies, &surface.obstacles);
         let drops = &surface.drops;
-        let query = Query {
-            surface,
-            course,
-            renewed,
-            parallel,
-        };
+        let query = Query { surface, course, renewed, parallel };
         let is_new = |points: &[u32]| query.is_new(points);
         pairs.retain(|pair| !is_new(&pair.candidate.points));
         let kept = pairs.len();
@@ -184,15 +179,11 @@ struct Query<'a> {
 impl Query<'_> {
     /// Returns whether one of these vertices has a new course.
     fn is_new(&self, points: &[u32]) -> bool {
-        self.renewed
-            .is_none_or(|renewed| points.iter().any(|i| renewed[*i as usize]))
+        self.renewed.is_none_or(|renewed| points.iter().any(|i| renewed[*i as usize]))
     }
 
     /// Adds the pairs of vertices of the first side and triangles of the second.
-    #[expect(
-        clippy::needless_bitwise_bool,
-        reason = "a branch would be guessed wrong"
-    )]
+    #[expect(clippy::needless_bitwise_bool, reason = "a branch would be guessed wrong")]
     fn touching(
         &self,
         [(first, first_trees), (second, second_trees)]: [Side; 2],
@@ -210,10 +201,7 @@ impl Query<'_> {
     }
 
     /// Adds the pairs of edges of both sides, which may be the same.
-    #[expect(
-        clippy::needless_bitwise_bool,
-        reason = "a branch would be guessed wrong"
-    )]
+    #[expect(clippy::needless_bitwise_bool, reason = "a branch would be guessed wrong")]
     fn crossing(
         &self,
         [(first, first_trees), (second, second_trees)]: [Side; 2],
@@ -249,13 +237,7 @@ impl Query<'_> {
         let find = |blocks: &[[u32; 2]], near: &mut Vec<[u32; 2]>, pairs: &mut Vec<Listed>| {
             near.clear();
             let found = &mut *near;
-            Meeting {
-                trees,
-                changed: self.renewed.is_some(),
-                blocks,
-                found,
-            }
-            .find();
+            Meeting { trees, changed: self.renewed.is_some(), blocks, found }.find();
             self.bound(kind, near.iter().map(|pair| primitives(*pair)), pairs);
         };
         if self.parallel {
@@ -315,10 +297,7 @@ impl Query<'_> {
         let x = points.map(|i| course.base[i as usize] - origin);
         let normal = match kind {
             PairKind::VertexFloor => Vector3::y(),
-            _ => closest(kind, &x)
-                .offset
-                .try_normalize(0.0)
-                .unwrap_or_default(),
+            _ => closest(kind, &x).offset.try_normalize(0.0).unwrap_or_default(),
         };
         // The plane between the primitives bounds their distance, now and later.
         let apart = |v: [Vector3<f64>; 4]| {
@@ -329,11 +308,7 @@ impl Query<'_> {
                 PairKind::VertexFloor => a - b,
             }
         };
-        let distance = if normal == Vector3::zeros() {
-            f64::NEG_INFINITY
-        } else {
-            apart(x)
-        };
+        let distance = if normal == Vector3::zeros() { f64::NEG_INFINITY } else { apart(x) };
         let closing = -apart(points.map(|i| course.speeds[i as usize]));
         self.listed(kind, ranks, points, [distance, closing])
     }

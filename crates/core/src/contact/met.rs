@@ -81,11 +81,7 @@ pub struct Stop {
 impl PointImpact {
     /// Returns the change of the velocity (m/s) of a particle that is free.
     fn change(&self) -> Vector3<f64> {
-        let Least {
-            before,
-            speed,
-            friction,
-        } = self.least;
+        let Least { before, speed, friction } = self.least;
         change_in_impact(before, self.normal, speed, friction)
     }
 }
@@ -257,11 +253,7 @@ impl Met<'_> {
                 }
             }
             // A particle that sticks moves like the point at which it was left.
-            let own = if kept > 0.0 {
-                own
-            } else {
-                self.velocity(row(x, n, i) - c)
-            };
+            let own = if kept > 0.0 { own } else { self.velocity(row(x, n, i) - c) };
             let left = self.left(i, (slip, kept), nearest.normal);
             if !is_held {
                 set_row(v, n, i, own + outwards + left);
@@ -291,11 +283,7 @@ impl Met<'_> {
     /// latest.
     fn touch(&self, i: usize, [x, v]: [Vector3<f64>; 2], inside: bool) -> Option<Touch> {
         let (Interval { t, h }, n) = (self.span, self.inverse_masses.len());
-        let course = Course {
-            x: [row(self.x0?, n, i), x],
-            v: [row(self.v0?, n, i), v],
-            h,
-        };
+        let course = Course { x: [row(self.x0?, n, i), x], v: [row(self.v0?, n, i), v], h };
         let approach = Approach::new(self.obstacle, &course, t);
         // A particle that touches at the beginning may sink in a little, as long as it does not
         // pass.
@@ -316,17 +304,10 @@ impl Met<'_> {
         if touches && !shape.is_convex() {
             return None;
         }
-        let depth = if touches {
-            0.25 * shape.greatest_depth() - begun.min(0.0)
-        } else {
-            0.0
-        };
+        let depth = if touches { 0.25 * shape.greatest_depth() - begun.min(0.0) } else { 0.0 };
         let last = (inside && !touches).then_some(1.0);
-        let share = if begins {
-            0.0
-        } else {
-            approach.first(flight.unwrap_or(0.0), depth).or(last)?
-        };
+        let share =
+            if begins { 0.0 } else { approach.first(flight.unwrap_or(0.0), depth).or(last)? };
         let (point, normal) = approach.touched(share);
         let pose = self.obstacle.at(t + share * h);
         Some(Touch {
@@ -347,12 +328,7 @@ impl Met<'_> {
         if restitution == 0.0 || touch.touches {
             return None;
         }
-        let Touch {
-            share,
-            there: [point, normal],
-            ref pose,
-            ..
-        } = *touch;
+        let Touch { share, there: [point, normal], ref pose, .. } = *touch;
         let carried = velocity(pose, point);
         let relative = touch.speed - carried;
         let [begun, ended] = [(touch.begun, &self.before), (v, &self.after)]
@@ -379,11 +355,7 @@ impl Met<'_> {
         PointImpact {
             particle: i,
             normal,
-            least: Least {
-                before,
-                speed,
-                friction: self.friction,
-            },
+            least: Least { before, speed, friction: self.friction },
             carried,
             left: 0.0,
         }
@@ -493,11 +465,7 @@ impl Met<'_> {
 /// distance (m) along the normal, and ends at a depth (m), which rounding may make negative.
 fn touched([carried, at]: [Vector3<f64>; 2], [depth, approach]: [f64; 2]) -> Vector3<f64> {
     let depth = depth.max(0.0);
-    let share = if approach > depth * (1.0 + TOUCHING_SHARE) {
-        depth / approach
-    } else {
-        1.0
-    };
+    let share = if approach > depth * (1.0 + TOUCHING_SHARE) { depth / approach } else { 1.0 };
     carried + (at - carried) * (1.0 - share)
 }
 
@@ -526,9 +494,6 @@ impl Touch {
         let [point, normal] = self.end;
         let depth = normal.dot(&(point - d));
         let leaves_here = inside.is_some_and(|inside| inside.normal.dot(&normal) > 0.0);
-        (depth > 0.0 && !leaves_here).then(|| Nearest {
-            point: d + normal * depth,
-            normal,
-        })
+        (depth > 0.0 && !leaves_here).then(|| Nearest { point: d + normal * depth, normal })
     }
 }

@@ -47,15 +47,7 @@ pub struct Guarded {
 
 impl Default for Guarded {
     fn default() -> Self {
-        Self {
-            impulses: 0,
-            impulse: 0.0,
-            cuts: 0,
-            lost: 0.0,
-            first: 1.0,
-            planes: 0,
-            missed: 0.0,
-        }
+        Self { impulses: 0, impulse: 0.0, cuts: 0, lost: 0.0, first: 1.0, planes: 0, missed: 0.0 }
     }
 }
 
@@ -112,17 +104,9 @@ impl Motion {
     /// Updates `candidates` so that it contains every pair that may touch.
     pub fn cover(&mut self, surface: &Surface, candidates: &mut Candidates) {
         self.ends.clear();
-        let ends = self
-            .x0
-            .iter()
-            .zip(&self.moves.points)
-            .map(|(x, move_)| x + move_);
+        let ends = self.x0.iter().zip(&self.moves.points).map(|(x, move_)| x + move_);
         self.ends.extend(ends);
-        let stretch = Stretch {
-            times: self.times,
-            ends: [&self.x0, &self.ends],
-            speeds: None,
-        };
+        let stretch = Stretch { times: self.times, ends: [&self.x0, &self.ends], speeds: None };
         candidates.cover(surface, &stretch);
     }
 
@@ -219,10 +203,7 @@ impl Motion {
         let on_course = law.skin.restitution > 0.0;
         let kept = || Self::kept(surface, candidate, &x);
         let share = self.arrives(candidate, &law, (2.0 * law.max_kept(), on_course), kept)?;
-        Some(Hit {
-            share,
-            enters: false,
-        })
+        Some(Hit { share, enters: false })
     }
 
     /// Finds the share of the step at which a pair that begins beyond the range of its repulsion
@@ -237,10 +218,7 @@ impl Motion {
         let is_beyond = begun.is_some_and(|(begun, _)| begun >= range - surface.rounding());
         let share = self.arrives(candidate, &law, (range, is_beyond), || range);
         let share = share.filter(|_| is_beyond)?;
-        Some(Hit {
-            share,
-            enters: true,
-        })
+        Some(Hit { share, enters: true })
     }
 
     /// Finds the share of the step at which a pair comes as near as `kept` (m), in straight lines
@@ -258,11 +236,7 @@ impl Motion {
         }
         let kept = kept();
         let share = self.first_impact(candidate.kind, [&x, &moves], law.radius, kept)?;
-        if on_course {
-            self.arrival(candidate, share, kept)
-        } else {
-            Some(share)
-        }
+        if on_course { self.arrival(candidate, share, kept) } else { Some(share) }
     }
 
     /// Finds the share of the step at which a pair that would touch at another share, if it moved
@@ -274,10 +248,7 @@ impl Motion {
         let Closest { weights, offset } = closest(pair.kind, &at);
         let normal = offset.normalize();
         let along = |vector: &dyn Fn(usize) -> Vector3<f64>| {
-            normal.dot(&weighted(
-                &weights,
-                &pair.points.map(|i| vector(i as usize)),
-            ))
+            normal.dot(&weighted(&weights, &pair.points.map(|i| vector(i as usize))))
         };
         let end = normal.dot(&weighted(&weights, &ends));
         let rate = along(&|i| self.v[i]);
@@ -315,8 +286,7 @@ impl Motion {
     ) -> Option<f64> {
         let (time, planes) = time_and_planes(kind, from, moves, radius, kept);
         if planes > INCLUDED_PLANES {
-            self.planes
-                .fetch_add(planes - INCLUDED_PLANES, Ordering::Relaxed);
+            self.planes.fetch_add(planes - INCLUDED_PLANES, Ordering::Relaxed);
         }
         time
     }
@@ -364,11 +334,7 @@ impl Flight {
             bends.clear();
             bends.extend(v0.iter().zip(v).zip(moves).map(|((v0, v), way)| Bend {
                 gain: v - v0,
-                lag: if may_lag {
-                    way / h - (v0 + v) * 0.5
-                } else {
-                    Vector3::zeros()
-                },
+                lag: if may_lag { way / h - (v0 + v) * 0.5 } else { Vector3::zeros() },
             }));
         };
         read(&mut self.points, [&v0.points, &v.points, &moves.points]);
@@ -422,11 +388,7 @@ impl Flight {
         // a r2 + b r + c = 0 for the share r from the arrival to the end.
         let (a, b, c) = (0.5 * self.h * gain, -self.h * rate, end - kept);
         let root = (b * b - 4.0 * a * c).sqrt();
-        let left = if b > 0.0 {
-            -2.0 * c / (b + root)
-        } else {
-            (root - b) / (2.0 * a)
-        };
+        let left = if b > 0.0 { -2.0 * c / (b + root) } else { (root - b) / (2.0 * a) };
         left.is_finite().then_some(1.0 - left)
     }
 }

@@ -44,24 +44,14 @@ impl Obstacle {
     /// Creates a smooth obstacle of that shape on that path.
     #[must_use]
     pub fn smooth(shape: Shape, path: Path) -> Self {
-        Self {
-            shape,
-            path,
-            turn: None,
-            friction: 0.0,
-            restitution: 0.0,
-            thickness: 0.0,
-        }
+        Self { shape, path, turn: None, friction: 0.0, restitution: 0.0, thickness: 0.0 }
     }
 
     /// Returns the place and orientation at time t (s), which determine the positions of the
     /// obstacle's points.
     #[must_use]
     pub fn at(&self, t: f64) -> Pose {
-        Pose {
-            place: self.path.at(t),
-            orientation: self.turn.map(|turn| turn.orientation(t)),
-        }
+        Pose { place: self.path.at(t), orientation: self.turn.map(|turn| turn.orientation(t)) }
     }
 
     /// Lists the times at which its motion begins or ends (s). Some may be infinite or occur twice.
@@ -178,10 +168,7 @@ pub(crate) fn reaching_on(all: &[Obstacle]) -> Option<Vec<Obstacle>> {
         return None;
     }
     let both = all.iter().zip(reached);
-    Some(
-        both.map(|(own, reached)| reached.unwrap_or_else(|| own.clone()))
-            .collect(),
-    )
+    Some(both.map(|(own, reached)| reached.unwrap_or_else(|| own.clone())).collect())
 }
 
 /// Returns box k, if faces of it lie against other obstacles, with those faces inside these.
@@ -209,9 +196,7 @@ fn reach_on(all: &[Obstacle], k: usize) -> Option<Obstacle> {
             let corners = [a + b, a - b, b - a, -a - b];
             let holds = |other: &Obstacle, reach: f64| {
                 let face = center + outwards * (half_extents[axis] + reach);
-                corners
-                    .iter()
-                    .all(|corner| other.depth(0.0, face + corner) >= -none)
+                corners.iter().all(|corner| other.depth(0.0, face + corner) >= -none)
             };
             let against = others.iter().filter(|other| holds(other, 0.0));
             let lengths = (0..TRIED_LENGTHS).map(|k| 2.0 * half_extents[axis] / f64::from(1 << k));
@@ -220,14 +205,10 @@ fn reach_on(all: &[Obstacle], k: usize) -> Option<Obstacle> {
             ends[axis] += reached.fold(0.0, f64::max);
         }
     }
-    let middle = (0..3).fold(*center, |middle, axis| {
-        middle + axes[axis] * (0.5 * (high[axis] - low[axis]))
-    });
+    let middle =
+        (0..3).fold(*center, |middle, axis| middle + axes[axis] * (0.5 * (high[axis] - low[axis])));
     (low + high != half_extents * 2.0).then(|| Obstacle {
-        shape: Shape::Box {
-            half_extents: (low + high) * 0.5,
-            axes: *axes,
-        },
+        shape: Shape::Box { half_extents: (low + high) * 0.5, axes: *axes },
         path: Path::Still(middle),
         ..all[k].clone()
     })

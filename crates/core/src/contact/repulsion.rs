@@ -78,11 +78,7 @@ impl Pair {
         let closest = closest(self.kind, &self.x);
         let (distance, normal) = closest.apart(self.kind)?;
         let share = (thickness - (distance - self.law.radius)) / thickness;
-        (share > 0.0).then_some(Within {
-            weights: closest.weights,
-            normal,
-            share,
-        })
+        (share > 0.0).then_some(Within { weights: closest.weights, normal, share })
     }
 
     /// Returns the force F (N) and its derivative -dF/dg (N/m) at a penetration, as a share of the
@@ -100,13 +96,7 @@ impl Pair {
     fn potential(&self, share: f64) -> f64 {
         let (k, d) = (self.law.skin.stiffness, self.law.skin.thickness);
         let past = share - 1.0;
-        k * d
-            * d
-            * if past < 0.0 {
-                0.25 * share.powi(4)
-            } else {
-                0.25 + past + 1.5 * past * past
-            }
+        k * d * d * if past < 0.0 { 0.25 * share.powi(4) } else { 0.25 + past + 1.5 * past * past }
     }
 
     /// Returns the damping factor of the force at a penetration and a rate of the gap (m/s), and
@@ -115,10 +105,7 @@ impl Pair {
         let (Skin { damping: c, .. }, r) = (self.law.skin, self.law.skin.damping * rate);
         let (lost, size) = self.loss(share);
         let root = (size + r * r).sqrt();
-        let (factor, slope) = (
-            1.0 - lost * r / root,
-            -lost * c * size / (root * root * root),
-        );
+        let (factor, slope) = (1.0 - lost * r / root, -lost * c * size / (root * root * root));
         let (felt, fades) = self.felt(rate);
         (factor * felt, slope * felt + factor * fades)
     }
@@ -131,22 +118,13 @@ impl Pair {
             return (1.0, 0.0);
         }
         if skin.restitution == 0.0 {
-            let half = stopped
-                * if self.law.is_dull {
-                    1.0
-                } else {
-                    HALF_SPEED_RATIO
-                };
+            let half = stopped * if self.law.is_dull { 1.0 } else { HALF_SPEED_RATIO };
             let speed = rate / half;
             let squared = speed * speed;
             let felt = 1.0 / (1.0 + squared * squared);
             return (felt, -4.0 * squared * speed * felt * felt / half);
         }
-        let fastest = if rate < 0.0 {
-            stopped
-        } else {
-            skin.restitution * stopped
-        };
+        let fastest = if rate < 0.0 { stopped } else { skin.restitution * stopped };
         let ratio = rate / fastest;
         let left = 1.0 - ratio.powi(4);
         if left <= 0.0 {
@@ -159,12 +137,7 @@ impl Pair {
     /// Returns the largest share q of the force by which damping changes it, and the squared range
     /// of rates over which it changes, relative to that of the damping coefficient.
     fn loss(&self, share: f64) -> (f64, f64) {
-        let Skin {
-            restitution,
-            stiffness,
-            thickness,
-            ..
-        } = self.law.skin;
+        let Skin { restitution, stiffness, thickness, .. } = self.law.skin;
         if restitution == 0.0 {
             return (1.0, 1.0);
         }
@@ -195,11 +168,7 @@ impl Pair {
 
     /// Returns the forces on the four points (N), if there are any.
     pub fn forces(&self) -> Option<[Vector3<f64>; 4]> {
-        let Within {
-            weights,
-            normal,
-            share,
-        } = self.within()?;
+        let Within { weights, normal, share } = self.within()?;
         let (factor, along) = self.crossing();
         let (force, _) = self.law_at(share);
         let (damping, _) = self.damping(share, normal.dot(&weighted(&weights, &self.v)));
@@ -217,11 +186,7 @@ impl Pair {
     /// Returns the magnitude of the force between the primitives (N), if there is any, with the
     /// weights of their closest points and the normal from the second to the first.
     pub fn force(&self) -> Option<(f64, [f64; 4], Vector3<f64>)> {
-        let Within {
-            weights,
-            normal,
-            share,
-        } = self.within()?;
+        let Within { weights, normal, share } = self.within()?;
         let (damping, _) = self.damping(share, normal.dot(&weighted(&weights, &self.v)));
         let force = self.law_at(share).0 * damping * self.crossing().0;
         Some((force, weights, normal))
@@ -245,11 +210,7 @@ impl Pair {
             let moved = |a: &[Vector3<f64>; 4], d: &[Vector3<f64>; 4]| {
                 std::array::from_fn(|k| a[k] + d[k] * step)
             };
-            let pair = Self {
-                x: moved(&self.x, dx),
-                v: moved(&self.v, dv),
-                ..*self
-            };
+            let pair = Self { x: moved(&self.x, dx), v: moved(&self.v, dv), ..*self };
             pair.forces()
         };
         let (after, before) = (at(step), at(-step));
@@ -257,9 +218,7 @@ impl Pair {
             return None;
         }
         let [after, before] = [after, before].map(Option::unwrap_or_default);
-        Some(std::array::from_fn(|k| {
-            (after[k] - before[k]) / (2.0 * step)
-        }))
+        Some(std::array::from_fn(|k| (after[k] - before[k]) / (2.0 * step)))
     }
 
     /// Returns the share of the thickness that the gap lacks: above 0 within the thickness, 1 where
@@ -280,11 +239,7 @@ impl Pair {
     /// Returns the stiffness and damping, if there are any: the part of the differential that is
     /// positive semi-definite.
     pub fn stiffness(&self) -> Option<Stiffness> {
-        let Within {
-            weights,
-            normal,
-            share,
-        } = self.within()?;
+        let Within { weights, normal, share } = self.within()?;
         let factor = self.crossing().0;
         let (force, slope) = self.law_at(share);
         let (damping, rate) = self.damping(share, normal.dot(&weighted(&weights, &self.v)));

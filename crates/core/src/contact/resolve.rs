@@ -121,19 +121,13 @@ impl ContactPhase {
         *length = h;
         let (struck, impulse) = &mut self.struck;
         struck.sort_unstable();
-        let masses = Masses {
-            inverse: bodies.inverse_masses,
-            struck,
-            rebound: !bodies.are_struck,
-        };
+        let masses = Masses { inverse: bodies.inverse_masses, struck, rebound: !bodies.are_struck };
         let mut last = Statistics::default();
         let noted = &mut Noted {
             statistics: &mut last,
             impulses,
             rebounds: &mut self.rebounds,
-            joints: bodies
-                .joints
-                .filter(|_| y1.len() == 6 * bodies.inverse_masses.len()),
+            joints: bodies.joints.filter(|_| y1.len() == 6 * bodies.inverse_masses.len()),
             held: &mut self.held,
         };
         resolve_noting(obstacles, &masses, &step, y1, noted);
@@ -141,8 +135,7 @@ impl ContactPhase {
         last.impulse += std::mem::take(impulse);
         struck.clear();
         self.rebounds.sort_unstable_by(f64::total_cmp);
-        self.rebounds
-            .dedup_by(|later, share| *later - *share <= SIMULTANEOUS_SHARE);
+        self.rebounds.dedup_by(|later, share| *later - *share <= SIMULTANEOUS_SHARE);
         let few = self.rebounds.len() <= MAX_REBOUNDS;
         last.rebound = self.rebounds.first().copied().filter(|_| few);
         self.last = last;
@@ -189,10 +182,7 @@ impl ContactPhase {
                 if approach <= 0.0 {
                     continue;
                 }
-                let begun = self
-                    .y0
-                    .get(3 * n..6 * n)
-                    .map_or(row(v, n, i), |v0| row(v0, n, i));
+                let begun = self.y0.get(3 * n..6 * n).map_or(row(v, n, i), |v0| row(v0, n, i));
                 let press = ((begun - row(v, n, i)).dot(&normal) / h).max(0.0);
                 let height = left_out(obstacle.restitution, row(x, n, i));
                 let shortest = shortest_rebound(press, [height, 0.0]);
@@ -203,11 +193,7 @@ impl ContactPhase {
                     noted.held.push(PointImpact {
                         particle: i,
                         normal,
-                        least: Least {
-                            before: relative,
-                            speed,
-                            friction: obstacle.friction,
-                        },
+                        least: Least { before: relative, speed, friction: obstacle.friction },
                         carried,
                         left: 0.0,
                     });
@@ -256,11 +242,7 @@ pub fn resolve(
     step: &Step,
     y1: &mut [f64],
 ) -> Statistics {
-    let masses = Masses {
-        inverse: inverse_masses,
-        struck: &[],
-        rebound: true,
-    };
+    let masses = Masses { inverse: inverse_masses, struck: &[], rebound: true };
     let mut statistics = Statistics::default();
     let noted = &mut Noted {
         statistics: &mut statistics,
@@ -304,23 +286,12 @@ fn resolve_noting(
             struck: masses.struck,
             obstacle,
             friction: obstacle.friction,
-            restitution: if masses.rebound {
-                obstacle.restitution
-            } else {
-                0.0
-            },
-            span: Interval {
-                t: step.t,
-                h: step.h,
-            },
+            restitution: if masses.rebound { obstacle.restitution } else { 0.0 },
+            span: Interval { t: step.t, h: step.h },
             before,
             after,
             // A smooth floor moves particles vertically only.
-            axes: if obstacle.shape == Shape::Floor {
-                1..2
-            } else {
-                0..3
-            },
+            axes: if obstacle.shape == Shape::Floor { 1..2 } else { 0..3 },
         };
         match &obstacle.shape {
             &Shape::Sphere { radius } => {
@@ -371,8 +342,7 @@ fn pass_on(noted: &mut Noted, inverse_masses: &[f64], y1: &mut [f64]) {
         tie.push(left, &mut moves);
     }
     for (impact, blow) in held.iter().zip(&blows) {
-        blow.contact
-            .push(blow.impulse * impact.left, inverse_masses, &mut moves);
+        blow.contact.push(blow.impulse * impact.left, inverse_masses, &mut moves);
         if blow.is_free {
             blow.note(&changes, joints);
         }

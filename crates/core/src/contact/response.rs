@@ -86,9 +86,7 @@ impl Effect {
         });
         Self {
             points: points.map(|i| (i, speed(i))).collect(),
-            solids: changed
-                .filter(|(_, it)| *it != [Vector3::zeros(); 2])
-                .collect(),
+            solids: changed.filter(|(_, it)| *it != [Vector3::zeros(); 2]).collect(),
         }
     }
 
@@ -105,10 +103,7 @@ impl Effect {
                 Moved::Body(k) => parts[k][1] += impulse,
             }
         }
-        Self {
-            points,
-            solids: parts.into_iter().enumerate().collect(),
-        }
+        Self { points, solids: parts.into_iter().enumerate().collect() }
     }
 
     /// Adds a multiple of the vectors to a field. The points of the bodies must be settled
@@ -168,10 +163,7 @@ impl Response {
             write_momentum(&mut y, n, k, momentum);
         }
         joined.joints.fit(&mut y);
-        Self {
-            direction,
-            effect: Effect::read(&y, n, solids),
-        }
+        Self { direction, effect: Effect::read(&y, n, solids) }
     }
 
     /// Lists the particles, without those of bodies, whose velocities change.

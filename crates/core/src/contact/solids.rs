@@ -253,11 +253,7 @@ impl Solid {
     /// Returns the orientation at the end of a step with that rotation vector (rad).
     fn orientation(&self, turned: Vector3<f64>) -> Quaternion<f64> {
         let (way, q) = (self.unguarded[0], self.ends[1].q);
-        if turned == way {
-            q
-        } else {
-            turn(turned - way) * q
-        }
+        if turned == way { q } else { turn(turned - way) * q }
     }
 
     /// Returns the rotation and angular momentum at the end of the step, if the safeguard has
@@ -269,10 +265,7 @@ impl Solid {
         if turning != spin {
             momentum += self.inertia * (turning - spin);
         }
-        Rotation {
-            q: self.orientation(turned),
-            momentum,
-        }
+        Rotation { q: self.orientation(turned), momentum }
     }
 }
 

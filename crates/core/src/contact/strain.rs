@@ -79,12 +79,7 @@ impl StrainLimit {
                 {
                     row.count += 1;
                 }
-                _ => rows.push(Row {
-                    i,
-                    j,
-                    count: 1,
-                    longest,
-                }),
+                _ => rows.push(Row { i, j, count: 1, longest }),
             }
         }
         let tethers = tethers(&rows, inverse_masses);
@@ -128,9 +123,7 @@ impl StrainLimiter {
     /// Creates a phase with room for states of length `dim`.
     #[must_use]
     pub fn new(dim: usize) -> Self {
-        Self {
-            moments: Vec::with_capacity(dim / 2),
-        }
+        Self { moments: Vec::with_capacity(dim / 2) }
     }
 
     /// Shortens springs that are too long in y1 = [x | v], the end of a step of h (s), and changes
@@ -145,20 +138,13 @@ impl StrainLimiter {
     ) -> Strained {
         let n = inverse_masses.len();
         let (x, v) = y1.split_at_mut(3 * n);
-        let mut strained = Strained {
-            excess: limit.excess(x),
-            sweeps: 0,
-        };
+        let mut strained = Strained { excess: limit.excess(x), sweeps: 0 };
         if strained.excess <= 0.0 {
             return strained;
         }
         self.moments.clear();
         self.moments.resize(3 * n, 0.0);
-        let mut ends = Ends {
-            x,
-            moments: &mut self.moments,
-            inverse_masses,
-        };
+        let mut ends = Ends { x, moments: &mut self.moments, inverse_masses };
         while strained.sweeps < MAX_SWEEPS {
             strained.sweeps += 1;
             for tether in &limit.tethers {
@@ -270,10 +256,6 @@ fn tethers(rows: &[Row], inverse_masses: &[f64]) -> Vec<Tether> {
     }
     let held = nearest.iter().enumerate();
     held.filter(|(_, (longest, _))| *longest > 0.0 && longest.is_finite())
-        .map(|(particle, &(longest, pin))| Tether {
-            pin,
-            particle,
-            longest,
-        })
+        .map(|(particle, &(longest, pin))| Tether { pin, particle, longest })
         .collect()
 }

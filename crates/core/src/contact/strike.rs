@@ -57,10 +57,7 @@ pub(super) fn strike(
             if let Some(joined) = joined.filter(|_| impact.blow.is_free) {
                 impact.join(joined, motion);
             }
-            if !impacts
-                .iter()
-                .any(|other| impact.is_same_as(other, surface))
-            {
+            if !impacts.iter().any(|other| impact.is_same_as(other, surface)) {
                 impacts.push(impact);
             }
         }
@@ -141,9 +138,8 @@ fn first_hits(
     let mut first = vec![];
     for (pair, hit) in hits {
         let time = hit.share;
-        let known: Vec<_> = parties(surface, motion, &pair)
-            .filter_map(|i| times.get(&i).copied())
-            .collect();
+        let known: Vec<_> =
+            parties(surface, motion, &pair).filter_map(|i| times.get(&i).copied()).collect();
         let at = known.first().copied().unwrap_or(Some(time));
         let law = surface.law(pair.kind, &pair.points);
         let is_one = at.is_some_and(|at| {
@@ -176,11 +172,8 @@ pub(super) fn find(
     moved: Option<&[bool]>,
     entered: Option<&[Candidate]>,
 ) -> Vec<(Candidate, Hit)> {
-    let whole = Linear {
-        x: &motion.x0,
-        moves: Some(&motion.moves.points),
-        rounding: surface.rounding(),
-    };
+    let whole =
+        Linear { x: &motion.x0, moves: Some(&motion.moves.points), rounding: surface.rounding() };
     let has_moved =
         |pair: &Candidate| moved.is_none_or(|moved| pair.points.iter().any(|i| moved[*i as usize]));
     let entered = entered.filter(|_| !surface.rigid().is_empty());

@@ -98,9 +98,7 @@ impl Surface {
                     sides.push([first; 2]);
                 }
                 let flat = simplices.flat_edges();
-                surface
-                    .flat
-                    .extend(flat.iter().map(|e| e.map(|i| first + i)));
+                surface.flat.extend(flat.iter().map(|e| e.map(|i| first + i)));
                 faces.extend(simplices.triangles.iter().map(|t| t.map(|i| first + i)));
                 sides.extend(simplices.edges.iter().map(|e| e.map(|i| first + i)));
                 first += points;
@@ -131,9 +129,7 @@ impl Surface {
                 sides.push([first; 2]);
             }
             let flat = simplices.flat_edges();
-            surface
-                .flat
-                .extend(flat.iter().map(|e| e.map(|i| first + i)));
+            surface.flat.extend(flat.iter().map(|e| e.map(|i| first + i)));
             faces.extend(simplices.triangles.iter().map(|t| t.map(|i| first + i)));
             sides.extend(simplices.edges.iter().map(|e| e.map(|i| first + i)));
             surface.anchors.push(simplices.points);
@@ -162,13 +158,9 @@ impl Surface {
     fn measure(&mut self) {
         let all = [&self.bodies, &self.obstacles, &self.drops];
         let touching = all.into_iter().flat_map(|items| &items.vertices);
-        let thicknesses = touching
-            .chain(&self.floors)
-            .map(|i| self.skins[*i as usize].thickness);
+        let thicknesses = touching.chain(&self.floors).map(|i| self.skins[*i as usize].thickness);
         (self.thinnest, self.thickest) = thicknesses
-            .fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), d| {
-                (least.min(d), most.max(d))
-            });
+            .fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), d| (least.min(d), most.max(d)));
     }
 
     /// Keeps pairs from touching: of bodies, named by their centres, and of particles with bodies.
@@ -267,9 +259,7 @@ impl Surface {
 
     /// Returns whether friction acts anywhere.
     pub(super) fn is_rough(&self) -> bool {
-        self.skins
-            .iter()
-            .any(|skin| skin.friction > 0.0 || skin.rolling > 0.0)
+        self.skins.iter().any(|skin| skin.friction > 0.0 || skin.rolling > 0.0)
     }
 
     /// Returns whether anything is rigid or elastic.
@@ -280,9 +270,7 @@ impl Surface {
     /// Returns whether a side of a pair is rigid, or the pair elastic.
     pub(super) fn is_rigid_or_elastic_pair(&self, kind: PairKind, points: &[u32; 4]) -> bool {
         let sides = [points[0], points[kind.first()]];
-        sides
-            .iter()
-            .any(|i| self.solid(*i).is_some() || self.skins[*i as usize].restitution > 0.0)
+        sides.iter().any(|i| self.solid(*i).is_some() || self.skins[*i as usize].restitution > 0.0)
     }
 
     /// Returns the gap beyond their thickness (m) below which surfaces may come nearer than the
@@ -324,13 +312,7 @@ impl Surface {
         } else if restitution > 0.0 {
             skin.damping = 1.0 / (TURN_SHARE * stopped);
         }
-        Law {
-            skin,
-            stopped,
-            is_dull,
-            restitution,
-            radius: self.radii(kind, points),
-        }
+        Law { skin, stopped, is_dull, restitution, radius: self.radii(kind, points) }
     }
 
     /// Returns the thickness of a pair (m).

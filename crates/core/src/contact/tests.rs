@@ -17,13 +17,7 @@ use crate::random::SplitMix;
 const SHARES: [Option<[f64; 2]>; 4] = [None, Some([0.05, 1.0]), Some([0.5, 0.0]), Some([2.0, 9.0])];
 
 fn skin(thickness: f64) -> Skin {
-    Skin {
-        thickness,
-        stiffness: 40.0,
-        damping: 0.5,
-        friction: 0.3,
-        ..Skin::default()
-    }
+    Skin { thickness, stiffness: 40.0, damping: 0.5, friction: 0.3, ..Skin::default() }
 }
 
 fn obstacles() -> Vec<Obstacle> {
@@ -31,11 +25,7 @@ fn obstacles() -> Vec<Obstacle> {
     let half_extents = Vector3::new(0.3, 0.2, 0.4);
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let cuboid = Shape::Box { half_extents, axes };
-    let places = [
-        (ball, -1.0, 0.2),
-        (cuboid, 1.0, 0.05),
-        (Shape::Floor, -0.9, 0.1),
-    ];
+    let places = [(ball, -1.0, 0.2), (cuboid, 1.0, 0.05), (Shape::Floor, -0.9, 0.1)];
     let obstacle = |(shape, height, thickness)| Obstacle {
         thickness,
         friction: 0.5,
@@ -50,21 +40,13 @@ fn all_within(surface: &Surface, x: &[Vector3<f64>]) -> Vec<(PairKind, [u32; 4])
     let n = surface.particles() as u32;
     let (triangles, edges): (Vec<_>, Vec<_>) =
         (surface.triangles().collect(), surface.edges().collect());
-    let vertices = surface
-        .bodies
-        .vertices
-        .iter()
-        .chain(&surface.obstacles.vertices);
+    let vertices = surface.bodies.vertices.iter().chain(&surface.obstacles.vertices);
     let mut pairs = vec![];
     let mut add = |kind: PairKind, points: [u32; 4]| {
         let [a, b] = [points[0], points[kind.first()]];
         let pair = Candidate { points, kind };
         let offset = closest(kind, &pair.of(x)).offset;
-        let distance = if kind == PairKind::VertexFloor {
-            offset.y
-        } else {
-            offset.norm()
-        };
+        let distance = if kind == PairKind::VertexFloor { offset.y } else { offset.norm() };
         let law = surface.law(kind, &points);
         if (a < n || b < n) && distance - law.radius < law.skin.thickness {
             pairs.push((kind, points));
@@ -76,10 +58,7 @@ fn all_within(surface: &Surface, x: &[Vector3<f64>]) -> Vec<(PairKind, [u32; 4])
         }
     }
     for (k, e) in edges.iter().enumerate() {
-        for f in edges[..k]
-            .iter()
-            .filter(|f| !e.iter().any(|i| f.contains(i)))
-        {
+        for f in edges[..k].iter().filter(|f| !e.iter().any(|i| f.contains(i))) {
             let ([a, b], [c, d]) = if e < f { (*e, *f) } else { (*f, *e) };
             add(PairKind::EdgeEdge, [a, b, c, d]);
         }
@@ -128,32 +107,17 @@ fn lists_are_complete_and_in_order() {
             v[step as usize % 60] += vector(30.0);
         }
         let kick = if step % 50 == 49 { 40.0 } else { 0.05 };
-        v[..60]
-            .iter_mut()
-            .for_each(|v| *v += vector(kick) - *v * 0.02);
+        v[..60].iter_mut().for_each(|v| *v += vector(kick) - *v * 0.02);
         let end: Vec<_> = start.iter().zip(&v).map(|(x, v)| x + v * h).collect();
         let middle: Vec<_> = start.iter().zip(&end).map(|(a, b)| (a + b) / 2.0).collect();
         let expected = all_within(&surface, &middle);
         touching += expected.len();
         for list in &mut lists {
-            for (times, ends) in [
-                ([t + h / 2.0; 2], [&middle; 2]),
-                ([t, t + h], [&start, &end]),
-            ] {
+            for (times, ends) in [([t + h / 2.0; 2], [&middle; 2]), ([t, t + h], [&start, &end])] {
                 let speeds = Some(&v[..]);
                 let ends = ends.map(|x| &x[..]);
-                list.cover(
-                    &surface,
-                    &Stretch {
-                        times,
-                        ends,
-                        speeds,
-                    },
-                );
-                let keys: Vec<_> = list
-                    .near(0.0)
-                    .map(|pair| (pair.kind, pair.points))
-                    .collect();
+                list.cover(&surface, &Stretch { times, ends, speeds });
+                let keys: Vec<_> = list.near(0.0).map(|pair| (pair.kind, pair.points)).collect();
                 assert!(keys.is_sorted_by(|a, b| a < b), "step {step}");
                 let missing = expected.iter().find(|key| keys.binary_search(key).is_err());
                 assert_eq!(missing, None, "step {step}");
@@ -198,25 +162,14 @@ fn no_bit_depends_on_the_list() {
 /// the list was used, as where a step begins; it needs one where a vertex has.
 #[test]
 fn a_list_serves_the_beginning_of_the_next_step() {
-    let surface = Surface::new(
-        &[skin(0.1); 6],
-        &[[0, 1, 2], [3, 4, 5]],
-        &[],
-        &[],
-        &[],
-        true,
-    );
+    let surface = Surface::new(&[skin(0.1); 6], &[[0, 1, 2], [3, 4, 5]], &[], &[], &[], true);
     let at = |i: usize, height: f64| Vector3::new((i % 3) as f64, height, f64::from(i % 3 == 1));
     let (h, speeds) = (0.02, [Vector3::y(); 6]);
     let mut list = Candidates::default();
     let mut cover = |times: [f64; 2], rises: [f64; 2], kick: f64| {
         let place = |i: usize, rise: f64| at(i, rise + [0.01, 0.0, 0.0, 0.0, 0.0, kick][i]);
         let ends = rises.map(|rise| (0..6).map(|i| place(i, rise)).collect::<Vec<_>>());
-        let stretch = Stretch {
-            times,
-            ends: [&ends[0], &ends[1]],
-            speeds: Some(&speeds),
-        };
+        let stretch = Stretch { times, ends: [&ends[0], &ends[1]], speeds: Some(&speeds) };
         list.cover(&surface, &stretch);
         (list.begin, list.near(0.0).count())
     };

@@ -46,11 +46,7 @@ impl Air {
         at_least(0.0, "the density of the air", density)?;
         at_least(0.0, "the air's coefficient of drag", drag)?;
         at_least(0.0, "the air's coefficient of lift", lift)?;
-        Ok(Self {
-            density,
-            drag,
-            lift,
-        })
+        Ok(Self { density, drag, lift })
     }
 
     /// Returns the force (N) at a relative velocity u (m/s) on an area vector N (m2).
@@ -85,10 +81,8 @@ impl Air {
         let ddrag = through.signum() * dthrough * u + through.abs() * du;
         let (dspeed, dsize) = (u.dot(&du) / speed, area.dot(&darea) / size);
         let (slope, share) = (through / size, through / speed);
-        let (dslope, dshare) = (
-            (dthrough - slope * dsize) / size,
-            (dthrough - share * dspeed) / speed,
-        );
+        let (dslope, dshare) =
+            ((dthrough - slope * dsize) / size, (dthrough - share * dspeed) / speed);
         let across = speed * area - share * u;
         let dacross = dspeed * area + speed * darea - dshare * u - share * du;
         let half = 0.5 * self.density;

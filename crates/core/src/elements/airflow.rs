@@ -79,12 +79,7 @@ impl Airflow {
     fn add_in(&self, bands: usize, at: &At, f: &mut [f64]) {
         let n = f.len() / 3;
         fork(bands, 0..n, 1, columns_mut(f), &|particles, f| {
-            Arch::new().dispatch(Push {
-                airflow: self,
-                at,
-                particles,
-                f,
-            });
+            Arch::new().dispatch(Push { airflow: self, at, particles, f });
         });
     }
 }
@@ -154,10 +149,7 @@ impl Push<'_> {
             }
         }
         for (m, corners) in triangles.iter().enumerate() {
-            for i in corners
-                .iter()
-                .filter(|i| self.particles.contains(&(**i as usize)))
-            {
+            for i in corners.iter().filter(|i| self.particles.contains(&(**i as usize))) {
                 let k = *i as usize - self.particles.start;
                 for (f, force) in self.f.iter_mut().zip(&forces) {
                     f[k] += force[m];
@@ -212,19 +204,12 @@ mod tests {
         let [x, v] = [(); 2].map(|()| (0..3 * n).map(|_| random.between(-1.0, 1.0)).collect());
         let (x, v): (Vec<f64>, Vec<f64>) = (x, v);
         let corner = |k: usize| (k * 7919 % n) as u32;
-        let mut triangles: Vec<_> = (0..9001)
-            .map(|k| [0, 1, 2].map(|c| corner(3 * k + c)))
-            .collect();
+        let mut triangles: Vec<_> =
+            (0..9001).map(|k| [0, 1, 2].map(|c| corner(3 * k + c))).collect();
         // A triangle without an area.
         triangles[17] = [4, 4, 9];
         let triangles: Triangles = triangles.into_iter().collect();
-        let at = At {
-            t: 0.3,
-            x: &x,
-            v: &v,
-            masses: &[],
-            triangles: &triangles,
-        };
+        let at = At { t: 0.3, x: &x, v: &v, masses: &[], triangles: &triangles };
         let airflow = Airflow {
             wind: Wind::new(2, Vector3::new(0.0, 1.0, 4.0)),
             air: Air::new(1.2, 1.1, 0.6).unwrap(),

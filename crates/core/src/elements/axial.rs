@@ -95,14 +95,7 @@ pub(super) fn add_differential<E: Elastic>(
     [dx, dv]: [&[f64]; 2],
     df: &mut [f64],
 ) {
-    let AxialCoupling {
-        i,
-        j,
-        direction: u,
-        along,
-        across,
-        damping: c,
-    } = axial(spring, at.x);
+    let AxialCoupling { i, j, direction: u, along, across, damping: c } = axial(spring, at.x);
     let dd = difference(dx, i, j);
     let share = dot(u, dd);
     if E::ONLY_PULLS && c > 0.0 {
@@ -172,20 +165,13 @@ pub(super) fn energy<E: Elastic>(springs: impl IntoIterator<Item = E>, x: &[f64]
         let [i, j] = spring.ends();
         spring.energy(norm(difference(x, i, j)))
     };
-    Energy {
-        elastic: springs.into_iter().map(of_one).sum(),
-        ..Energy::default()
-    }
+    Energy { elastic: springs.into_iter().map(of_one).sum(), ..Energy::default() }
 }
 
 #[inline]
 fn difference(a: &[f64], i: usize, j: usize) -> [f64; 3] {
     let n = a.len() / 3;
-    [
-        a[i] - a[j],
-        a[n + i] - a[n + j],
-        a[2 * n + i] - a[2 * n + j],
-    ]
+    [a[i] - a[j], a[n + i] - a[n + j], a[2 * n + i] - a[2 * n + j]]
 }
 
 #[inline]

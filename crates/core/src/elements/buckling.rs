@@ -81,9 +81,7 @@ impl Force for BucklingSprings {
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {
-        self.0
-            .iter()
-            .try_for_each(|strip| check_ends(strip.ends(), particles))
+        self.0.iter().try_for_each(|strip| check_ends(strip.ends(), particles))
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {
@@ -112,10 +110,7 @@ impl Force for BucklingSprings {
 
     fn cost(&self) -> Cost {
         let couplings = self.0.len() as f64;
-        Cost {
-            couplings,
-            price: couplings * PRICE,
-        }
+        Cost { couplings, price: couplings * PRICE }
     }
 
     fn scale(&mut self, stiffness: f64, damping: f64) {
@@ -128,8 +123,7 @@ impl Force for BucklingSprings {
     }
 
     fn remove_springs(&mut self, torn: &[[usize; 2]]) {
-        self.0
-            .retain(|strip| torn.binary_search(&ends(&strip.straight())).is_err());
+        self.0.retain(|strip| torn.binary_search(&ends(&strip.straight())).is_err());
     }
 }
 
@@ -148,15 +142,8 @@ impl Strip {
     fn new(parameters: Buckling) -> Result<Self, Error> {
         let r = parameters.rest_length;
         positive("a buckling spring's rest length", r)?;
-        positive(
-            "a buckling spring's stiffness against bending",
-            parameters.bending,
-        )?;
-        at_least(
-            0.0,
-            "a buckling spring's tension stiffness",
-            parameters.tension,
-        )?;
+        positive("a buckling spring's stiffness against bending", parameters.bending)?;
+        at_least(0.0, "a buckling spring's tension stiffness", parameters.tension)?;
         at_least(0.0, "a buckling spring's damping", parameters.damping)?;
         let least = 4.0 * PI * PI * parameters.bending / (r * r * r);
         at_least(
@@ -175,10 +162,7 @@ impl Strip {
         while next > s {
             (s, next) = (next, newton(next));
         }
-        Ok(Self {
-            parameters,
-            buckles: r * (1.0 - s),
-        })
+        Ok(Self { parameters, buckles: r * (1.0 - s) })
     }
 
     /// Returns the spring as it is before it buckles.
@@ -292,9 +276,10 @@ const fn ratios(m: usize) -> [f64; TERMS] {
 
 /// Returns 1 - a y (1 - b y (1 - c y ...)), and its derivative.
 fn sum(ratios: &[f64; TERMS], y: f64) -> [f64; 2] {
-    ratios.iter().rev().fold([1.0, 0.0], |[sum, slope], ratio| {
-        [1.0 - ratio * y * sum, -ratio * (sum + y * slope)]
-    })
+    ratios
+        .iter()
+        .rev()
+        .fold([1.0, 0.0], |[sum, slope], ratio| [1.0 - ratio * y * sum, -ratio * (sum + y * slope)])
 }
 
 #[cfg(test)]
@@ -318,10 +303,7 @@ mod tests {
             let found = arc(s).y.sqrt();
             // Error of the bisection, where 1 - sinc is flat.
             let rounding = 1e-15 / found;
-            assert!(
-                (found - high).abs() < 1e-14 + rounding,
-                "{s}: {found} {high}"
-            );
+            assert!((found - high).abs() < 1e-14 + rounding, "{s}: {found} {high}");
         }
         assert!((arc(1.0).y.sqrt() - PI).abs() < 1e-14);
         assert_eq!(arc(0.0).y, 0.0);

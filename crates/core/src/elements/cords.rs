@@ -36,9 +36,7 @@ impl Force for Cords {
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {
-        self.0
-            .iter()
-            .try_for_each(|cord| check_ends(cord.ends(), particles))
+        self.0.iter().try_for_each(|cord| check_ends(cord.ends(), particles))
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {
@@ -67,10 +65,7 @@ impl Force for Cords {
 
     fn cost(&self) -> Cost {
         let couplings = self.0.len() as f64;
-        Cost {
-            couplings,
-            price: couplings,
-        }
+        Cost { couplings, price: couplings }
     }
 
     fn scale(&mut self, stiffness: f64, damping: f64) {
@@ -80,8 +75,7 @@ impl Force for Cords {
     }
 
     fn remove_springs(&mut self, torn: &[[usize; 2]]) {
-        self.0
-            .retain(|cord| torn.binary_search(&ends(&cord.0)).is_err());
+        self.0.retain(|cord| torn.binary_search(&ends(&cord.0)).is_err());
     }
 }
 
@@ -110,27 +104,15 @@ impl Elastic for Cord {
 
     #[inline]
     fn stiffness(&self, length: f64) -> f64 {
-        if self.is_taut(length) {
-            self.0.law.stiffness
-        } else {
-            0.0
-        }
+        if self.is_taut(length) { self.0.law.stiffness } else { 0.0 }
     }
 
     fn energy(&self, length: f64) -> f64 {
-        if self.is_taut(length) {
-            self.0.energy(length)
-        } else {
-            0.0
-        }
+        if self.is_taut(length) { self.0.energy(length) } else { 0.0 }
     }
 
     #[inline]
     fn damping(&self, length: f64) -> f64 {
-        if self.is_taut(length) {
-            self.0.law.damping
-        } else {
-            0.0
-        }
+        if self.is_taut(length) { self.0.law.damping } else { 0.0 }
     }
 }

@@ -24,10 +24,7 @@ impl Force for Drag {
     }
 
     fn drift_forces(&self) -> Option<DriftForces> {
-        Some(DriftForces {
-            drag: self.0,
-            ..DriftForces::default()
-        })
+        Some(DriftForces { drag: self.0, ..DriftForces::default() })
     }
 }
 

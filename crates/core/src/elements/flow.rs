@@ -26,27 +26,16 @@ impl Flow {
     /// whose inverse mass is `w` (1/kg).
     pub fn new(c: f64, g: Vector3<f64>, w: f64, h: f64) -> Self {
         let (phi, psi) = phi_psi(c * w * h);
-        Self {
-            v_to_x: h * phi,
-            to_x: h * h * psi * g,
-            v_to_v: -h * phi * c * w,
-            to_v: h * phi * g,
-        }
+        Self { v_to_x: h * phi, to_x: h * h * psi * g, v_to_v: -h * phi * c * w, to_v: h * phi * g }
     }
 
     /// Returns the positions and velocities along one axis after the flow.
     #[inline(always)]
     pub fn of<S: Simd>(self, simd: S, axis: usize, x: S::f64s, v: S::f64s) -> (S::f64s, S::f64s) {
         let add = |a, from, k, more| {
-            simd.add_f64s(
-                a,
-                mul_adds(simd, simd.splat_f64s(k), from, simd.splat_f64s(more)),
-            )
+            simd.add_f64s(a, mul_adds(simd, simd.splat_f64s(k), from, simd.splat_f64s(more)))
         };
-        (
-            add(x, v, self.v_to_x, self.to_x[axis]),
-            add(v, v, self.v_to_v, self.to_v[axis]),
-        )
+        (add(x, v, self.v_to_x, self.to_x[axis]), add(v, v, self.v_to_v, self.to_v[axis]))
     }
 
     /// Moves particles by the flow.
@@ -135,14 +124,7 @@ mod tests {
             for _ in 0..times {
                 let h = 0.7 / f64::from(times);
                 let (x, v) = (x.each_mut(), v.each_mut());
-                flow_each(
-                    0.5,
-                    g,
-                    &[2.0],
-                    h,
-                    x.map(|x| &mut x[..]),
-                    v.map(|v| &mut v[..]),
-                );
+                flow_each(0.5, g, &[2.0], h, x.map(|x| &mut x[..]), v.map(|v| &mut v[..]));
             }
             (x[0], v[0])
         };

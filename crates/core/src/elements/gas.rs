@@ -143,9 +143,7 @@ impl Force for Gas {
             let [da, db, dc] = self.corners(triangle, dx);
             change += dot(da, cross(b, c)) + dot(db, cross(c, a)) + dot(dc, cross(a, b));
             for (i, [y, z, dy, dz]) in
-                triangle
-                    .iter()
-                    .zip([[b, c, db, dc], [c, a, dc, da], [a, b, da, db]])
+                triangle.iter().zip([[b, c, db, dc], [c, a, dc, da], [a, b, da, db]])
             {
                 add(df, *i, cross(dy, z), p / 6.0);
                 add(df, *i, cross(y, dz), p / 6.0);
@@ -201,18 +199,12 @@ impl Force for Gas {
                 at_least + self.pressure(0.0)[0] * (least - volume)
             }
         };
-        Energy {
-            elastic,
-            ..Energy::default()
-        }
+        Energy { elastic, ..Energy::default() }
     }
 
     fn cost(&self) -> Cost {
         let couplings = 3.0 * self.triangles.len() as f64;
-        Cost {
-            couplings,
-            price: couplings,
-        }
+        Cost { couplings, price: couplings }
     }
 
     /// Lets the gas escape through the first hole.
@@ -229,9 +221,7 @@ impl Force for Gas {
 
 /// Returns the sides of triangles, in their direction.
 fn sides(triangles: &[[u32; 3]]) -> impl Iterator<Item = [u32; 2]> {
-    triangles
-        .iter()
-        .flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]])
+    triangles.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]])
 }
 
 fn row(x: &[f64], i: u32) -> [f64; 3] {

@@ -26,17 +26,11 @@ impl Force for Gravity {
         let of_axis =
             |(x, g): (&[f64], &f64)| -g * x.iter().zip(at.masses).map(|(x, m)| m * x).sum::<f64>();
         let columns = at.x.chunks_exact(at.masses.len());
-        Energy {
-            gravitational: columns.zip(&self.0).map(of_axis).sum(),
-            ..Energy::default()
-        }
+        Energy { gravitational: columns.zip(&self.0).map(of_axis).sum(), ..Energy::default() }
     }
 
     fn drift_forces(&self) -> Option<DriftForces> {
-        Some(DriftForces {
-            gravity: self.0,
-            ..DriftForces::default()
-        })
+        Some(DriftForces { gravity: self.0, ..DriftForces::default() })
     }
 }
 

@@ -95,12 +95,7 @@ mod tests {
     fn pendulum(method: &str, change: impl FnOnce(&mut Network)) -> Simulation {
         let mut network = Network::new(vec![2.0; 2]).unwrap();
         let law = SpringLaw::new(50.0, 1.0, 0.0).unwrap();
-        let spring = Spring {
-            kind: SpringKind::Structural,
-            i: 0,
-            j: 1,
-            law,
-        };
+        let spring = Spring { kind: SpringKind::Structural, i: 0, j: 1, law };
         network.add_spring(spring).unwrap();
         network.pin(0, Path::Still(Vector3::zeros())).unwrap();
         change(&mut network);
@@ -126,10 +121,7 @@ mod tests {
             usual.advance_to(1.0).unwrap();
             // Verlet solves gravity exactly, and kicks with other forces.
             let apart = (own.position(1) - usual.position(1)).norm();
-            assert!(
-                usual.position(1).y < -0.5 && apart < 1e-3,
-                "{method}: {apart}"
-            );
+            assert!(usual.position(1).y < -0.5 && apart < 1e-3, "{method}: {apart}");
         }
     }
 

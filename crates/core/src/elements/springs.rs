@@ -37,10 +37,7 @@ impl Springs {
     /// Creates springs in the order given.
     #[must_use]
     pub fn new(all: Vec<Spring>) -> Self {
-        Self {
-            all,
-            packed: OnceLock::new(),
-        }
+        Self { all, packed: OnceLock::new() }
     }
 
     /// Returns all springs, in their order.
@@ -93,9 +90,7 @@ impl Force for Springs {
     }
 
     fn check(&self, particles: usize) -> Result<(), Error> {
-        self.all
-            .iter()
-            .try_for_each(|spring| check_ends([spring.i, spring.j], particles))
+        self.all.iter().try_for_each(|spring| check_ends([spring.i, spring.j], particles))
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {
@@ -143,10 +138,7 @@ impl Force for Springs {
     fn cost(&self) -> Cost {
         let springs = self.all.len() as f64;
         let speed = if self.packed().is_some() { SPEED } else { 1.0 };
-        Cost {
-            couplings: springs,
-            price: springs / speed,
-        }
+        Cost { couplings: springs, price: springs / speed }
     }
 
     fn scale(&mut self, stiffness: f64, damping: f64) {
@@ -156,8 +148,7 @@ impl Force for Springs {
     }
 
     fn remove_springs(&mut self, torn: &[[usize; 2]]) {
-        self.change()
-            .retain(|spring| torn.binary_search(&ends(spring)).is_err());
+        self.change().retain(|spring| torn.binary_search(&ends(spring)).is_err());
     }
 }
 
@@ -171,20 +162,12 @@ pub(super) fn add_runs(
     matrix: &Matrix,
     diagonal: &mut Diagonal,
 ) {
-    Arch::new().dispatch(OfRuns {
-        runs,
-        matrix,
-        diagonal,
-    });
+    Arch::new().dispatch(OfRuns { runs, matrix, diagonal });
 }
 
 /// Adds the blocks of single springs.
 pub(super) fn add_springs(springs: &[Spring], matrix: &Matrix, diagonal: &mut Diagonal) {
-    Arch::new().dispatch(OfSprings {
-        springs,
-        matrix,
-        diagonal,
-    });
+    Arch::new().dispatch(OfSprings { springs, matrix, diagonal });
 }
 
 struct OfRuns<'a, 'b, R> {
@@ -280,11 +263,7 @@ struct Chunk {
 impl Chunk {
     #[inline(always)]
     fn new() -> Self {
-        Self {
-            apart: [[0.0; CHUNK]; 3],
-            laws: [[0.0; CHUNK]; 3],
-            parts: [[0.0; CHUNK]; 7],
-        }
+        Self { apart: [[0.0; CHUNK]; 3], laws: [[0.0; CHUNK]; 3], parts: [[0.0; CHUNK]; 7] }
     }
 
     /// Gives all springs one law.
@@ -349,22 +328,13 @@ mod tests {
         let mut element = Springs::new((0..2000).map(spring).filter(|s| s.i != s.j).collect());
         let check = |element: &Springs| {
             assert!(element.packed().is_some());
-            let at = At {
-                t: 0.0,
-                x: &x,
-                v: &v,
-                masses: &[],
-                triangles: &Triangles::default(),
-            };
+            let at = At { t: 0.0, x: &x, v: &v, masses: &[], triangles: &Triangles::default() };
             let [mut found, mut expected] = [vec![0.0; 150], vec![0.0; 150]];
             element.add_forces(&at, &mut found);
             add_all(&element.all, &x, &v, &mut expected);
             let size = expected.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
             for (found, expected) in found.iter().zip(&expected) {
-                assert!(
-                    (found - expected).abs() < 1e-13 * size,
-                    "{found} {expected}"
-                );
+                assert!((found - expected).abs() < 1e-13 * size, "{found} {expected}");
             }
         };
         check(&element);

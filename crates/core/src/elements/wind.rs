@@ -70,12 +70,7 @@ impl Wind {
                 phase: random.between(0.0, std::f64::consts::TAU),
             }
         });
-        Self {
-            breeze: force,
-            waves,
-            air: None,
-            region: None,
-        }
+        Self { breeze: force, waves, air: None, region: None }
     }
 
     /// Creates a wind that blows on the [triangles](crate::Network::set_triangles) of a network and
@@ -83,10 +78,7 @@ impl Wind {
     /// most 2.2 times as fast.
     #[must_use]
     pub fn on_triangles(seed: u64, velocity: Vector3<f64>, air: Air) -> Self {
-        Self {
-            air: Some(air),
-            ..Self::new(seed, velocity)
-        }
+        Self { air: Some(air), ..Self::new(seed, velocity) }
     }
 
     /// Returns the same wind in a region alone.
@@ -95,10 +87,7 @@ impl Wind {
     /// A radius of the region is not above 0.
     pub fn within(&self, region: Region) -> Result<Self, Error> {
         region.check()?;
-        Ok(Self {
-            region: Some((region, 0.0)),
-            ..*self
-        })
+        Ok(Self { region: Some((region, 0.0)), ..*self })
     }
 
     /// Returns the same gusts, `factor` times as strong.
@@ -106,10 +95,7 @@ impl Wind {
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
             breeze: self.breeze * factor,
-            waves: self.waves.map(|wave| Wave {
-                amplitude: wave.amplitude * factor,
-                ..wave
-            }),
+            waves: self.waves.map(|wave| Wave { amplitude: wave.amplitude * factor, ..wave }),
             ..*self
         }
     }
@@ -117,26 +103,16 @@ impl Wind {
     /// Returns this wind without gusts.
     #[must_use]
     pub fn steady(&self) -> Self {
-        let still = Wave {
-            amplitude: Vector3::zeros(),
-            number: Vector3::zeros(),
-            rate: 0.0,
-            phase: 0.0,
-        };
-        Self {
-            waves: [still; WAVES],
-            ..*self
-        }
+        let still =
+            Wave { amplitude: Vector3::zeros(), number: Vector3::zeros(), rate: 0.0, phase: 0.0 };
+        Self { waves: [still; WAVES], ..*self }
     }
 
     /// Returns this wind, shifted so that its time t (s) becomes 0.
     #[must_use]
     pub fn ahead(&self, t: f64) -> Self {
         Self {
-            waves: self.waves.map(|wave| Wave {
-                phase: wave.phase - wave.rate * t,
-                ..wave
-            }),
+            waves: self.waves.map(|wave| Wave { phase: wave.phase - wave.rate * t, ..wave }),
             region: self.region.map(|(region, ahead)| (region, ahead + t)),
             ..*self
         }
@@ -160,8 +136,7 @@ impl Wind {
 
     /// Returns the region at time t (s), if there is one.
     pub(crate) fn stream(&self, t: f64) -> Option<Stream> {
-        self.region
-            .map(|(region, ahead)| region.at(t + ahead, self.breeze))
+        self.region.map(|(region, ahead)| region.at(t + ahead, self.breeze))
     }
 
     /// Returns the air, if the wind blows on triangles.
@@ -233,12 +208,7 @@ impl Wind {
 
 impl ByParticle for Wind {
     fn add(&self, t: f64, x: [&[f64]; 3], f: &mut [&mut [f64]; 3]) {
-        Arch::new().dispatch(Blow {
-            wind: self,
-            t,
-            x,
-            f,
-        });
+        Arch::new().dispatch(Blow { wind: self, t, x, f });
     }
 }
 
@@ -358,18 +328,15 @@ impl Region {
     /// Returns a quarter of the shortest period of the region's motion in an interval (s).
     pub(super) fn quarter_period(&self, times: [f64; 2]) -> f64 {
         let turn = self.turn.filter(|turn| turn.is_on(times));
-        let of_turn = turn.map_or(f64::INFINITY, |turn| {
-            0.5 * std::f64::consts::PI / turn.rate.abs()
-        });
+        let of_turn =
+            turn.map_or(f64::INFINITY, |turn| 0.5 * std::f64::consts::PI / turn.rate.abs());
         self.path.quarter_period(times).min(of_turn)
     }
 
     /// Returns the region at time t (s), for a wind along a direction before any turn.
     pub(super) fn at(&self, t: f64, direction: Vector3<f64>) -> Stream {
-        let pose = Pose {
-            place: self.path.at(t),
-            orientation: self.turn.map(|turn| turn.orientation(t)),
-        };
+        let pose =
+            Pose { place: self.path.at(t), orientation: self.turn.map(|turn| turn.orientation(t)) };
         let direction = direction.try_normalize(0.0).unwrap_or_else(Vector3::x);
         let across = (self.radius * self.radius).recip();
         Stream {
@@ -488,12 +455,7 @@ mod tests {
                 rate: 2.0,
                 phase: 0.3,
             },
-            turn: Some(Turn {
-                axis: Vector3::y(),
-                rate: 1.3,
-                start: 0.1,
-                end: None,
-            }),
+            turn: Some(Turn { axis: Vector3::y(), rate: 1.3, start: 0.1, end: None }),
             radius: 9.0,
             length: 14.0,
         };

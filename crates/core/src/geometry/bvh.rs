@@ -42,18 +42,12 @@ impl Aabb {
             let of = |k: usize| points.iter().map(|x| x[k]).reduce(pick).unwrap_or(f64::NAN);
             [of(0), of(1), of(2)]
         };
-        Self {
-            low: each(f64::min),
-            high: each(f64::max),
-        }
+        Self { low: each(f64::min), high: each(f64::max) }
     }
 
     /// Returns the box enlarged by a distance (m) on all sides.
     pub fn grown(self, by: f64) -> Self {
-        Self {
-            low: self.low.map(|x| x - by),
-            high: self.high.map(|x| x + by),
-        }
+        Self { low: self.low.map(|x| x - by), high: self.high.map(|x| x + by) }
     }
 
     /// Returns the place of the centre of another box along a curve through this box that keeps
@@ -65,9 +59,7 @@ impl Aabb {
         let cells = f64::from(CELLS);
         // From 0 to CELLS along the longest axis: a number that is not finite counts as 0.
         let cell = |k: usize| (cells * (0.5 + 0.5 * (center[k] - all[k]) / longest)) as u64;
-        [0, 1, 2]
-            .iter()
-            .fold(0, |place, k| place | spread(cell(*k)) << k)
+        [0, 1, 2].iter().fold(0, |place, k| place | spread(cell(*k)) << k)
     }
 
     /// Returns the smallest box around two boxes.
@@ -87,11 +79,7 @@ impl Aabb {
 
     /// Returns the squared distance (m2) of a point from the box: 0 inside.
     pub fn squared_distance(&self, point: &Vector3<f64>) -> f64 {
-        let outside = |k: usize| {
-            (self.low[k] - point[k])
-                .max(point[k] - self.high[k])
-                .max(0.0)
-        };
+        let outside = |k: usize| (self.low[k] - point[k]).max(point[k] - self.high[k]).max(0.0);
         [0, 1, 2].map(|k| outside(k).powi(2)).iter().sum()
     }
 
@@ -140,11 +128,7 @@ impl Bvh {
     /// Adds the nodes of these items. Their bounds are set later.
     fn add(&mut self, boxes: &[Aabb], items: &mut [u32]) {
         let (place, item) = (self.nodes.len(), items[0]);
-        self.nodes.push(Node {
-            bounds: boxes[item as usize],
-            second: 0,
-            item,
-        });
+        self.nodes.push(Node { bounds: boxes[item as usize], second: 0, item });
         if items.len() == 1 {
             self.places[item as usize] = place as u32;
             return;
@@ -276,11 +260,7 @@ impl Bvh {
         }
         let bound = |place: usize| (self.nodes[place].bounds.squared_distance(point), place);
         let (first, second) = (bound(place + 1), bound(second as usize));
-        let nearer_first = if second.0 < first.0 {
-            [second, first]
-        } else {
-            [first, second]
-        };
+        let nearer_first = if second.0 < first.0 { [second, first] } else { [first, second] };
         for (bound, place) in nearer_first {
             if best.as_ref().is_none_or(|best| bound <= best.0) {
                 self.nearest_below(place, point, measure, best);

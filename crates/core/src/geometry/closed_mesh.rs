@@ -73,17 +73,11 @@ impl ClosedMesh {
         let invalid = |why: String| Err(Error::Invalid(why));
         let (count, most) = (triangles.len(), Self::MAX_TRIANGLES);
         if count == 0 || count > most {
-            return invalid(format!(
-                "a closed mesh has 1 to {most} triangles, not {count}"
-            ));
+            return invalid(format!("a closed mesh has 1 to {most} triangles, not {count}"));
         }
         let mut all = points.iter();
         all.try_for_each(|point| finite("a point of a closed mesh", *point))?;
-        if let Some(i) = triangles
-            .iter()
-            .flatten()
-            .find(|i| **i as usize >= points.len())
-        {
+        if let Some(i) = triangles.iter().flatten().find(|i| **i as usize >= points.len()) {
             return invalid(format!("a triangle of a closed mesh has no corner {i}"));
         }
         let volume: f64 = triangles.iter().map(|t| volume(&points, t)).sum();
@@ -111,9 +105,7 @@ impl ClosedMesh {
         count: usize,
     ) -> Self {
         let (normals, faces) = normals(&points, &triangles);
-        let sides = triangles
-            .iter()
-            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         let mut edges: Vec<_> = sides.filter(|[a, b]| a < b).collect();
         edges.sort_unstable();
         let all: Vec<_> = (0..triangles.len() as u32).collect();
@@ -125,15 +117,9 @@ impl ClosedMesh {
                 own[*part as usize].push(k as u32);
             }
             own.retain(|triangles| !triangles.is_empty());
-            solids.extend(
-                own.into_iter()
-                    .map(|own| Tree::new(&points, &triangles, own)),
-            );
+            solids.extend(own.into_iter().map(|own| Tree::new(&points, &triangles, own)));
         }
-        let boxes: Vec<_> = solids
-            .iter()
-            .filter_map(|solid| solid.boxes.bounds())
-            .collect();
+        let boxes: Vec<_> = solids.iter().filter_map(|solid| solid.boxes.bounds()).collect();
         Self {
             normals,
             faces,
@@ -171,9 +157,7 @@ impl ClosedMesh {
             self.places.meeting(&place, |k| around.push(k as usize));
             around.sort_unstable();
             around.retain(|other| volumes[*other] > 0.0 && is_within(other));
-            owners[part] = around
-                .into_iter()
-                .min_by(|a, b| volumes[*a].total_cmp(&volumes[*b]));
+            owners[part] = around.into_iter().min_by(|a, b| volumes[*a].total_cmp(&volumes[*b]));
         }
         let mut triangles = self.triangles;
         for (t, part) in triangles.iter_mut().zip(&mut part_of) {
@@ -224,10 +208,7 @@ impl ClosedMesh {
             (point, last) = (point - offset, Some(normal));
             left.push(solid);
         }
-        last.map(|normal| Nearest {
-            point,
-            normal: normal.normalize(),
-        })
+        last.map(|normal| Nearest { point, normal: normal.normalize() })
     }
 
     /// Finds, of the solids that contain a point d, without those in `but`, the one from whose
@@ -282,9 +263,7 @@ impl ClosedMesh {
     /// normal there, of any length. If d is in solids, the surface is that of the one in which it
     /// is deepest.
     fn offset(&self, d: Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
-        let inside = (!self.solids.is_empty())
-            .then(|| self.deepest(d, &[]))
-            .flatten();
+        let inside = (!self.solids.is_empty()).then(|| self.deepest(d, &[])).flatten();
         match inside {
             Some((_, offset, normal)) => Some((offset, normal)),
             None => self.offset_from(&self.whole, d),
@@ -349,10 +328,10 @@ fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> (Vec<Vector3<f64>
     for normal in &mut corners {
         *normal = normal.try_normalize(0.0).unwrap_or_default();
     }
-    let faces = triangles.iter().zip(own).map(|(t, normal)| Face {
-        normal,
-        sides: [0, 1, 2].map(|k| sides[&side(t, k)]),
-    });
+    let faces = triangles
+        .iter()
+        .zip(own)
+        .map(|(t, normal)| Face { normal, sides: [0, 1, 2].map(|k| sides[&side(t, k)]) });
     (corners, faces.collect())
 }
 
@@ -371,9 +350,6 @@ fn volume(points: &[Vector3<f64>], triangle: &[u32; 3]) -> f64 {
 impl Tree {
     fn new(points: &[Vector3<f64>], triangles: &[[u32; 3]], own: Vec<u32>) -> Self {
         let around = |k: &u32| Aabb::around(triangles[*k as usize].map(|i| points[i as usize]));
-        Self {
-            boxes: Bvh::new(&own.iter().map(around).collect::<Vec<_>>()),
-            triangles: own,
-        }
+        Self { boxes: Bvh::new(&own.iter().map(around).collect::<Vec<_>>()), triangles: own }
     }
 }

@@ -64,19 +64,12 @@ impl Closest {
     }
 
     fn new(weights: [f64; 4], points: &[Vector3<f64>; 4]) -> Self {
-        Self {
-            weights,
-            offset: weighted(&weights, points),
-        }
+        Self { weights, offset: weighted(&weights, points) }
     }
 
     /// Returns the closer of two pairs of points.
     fn nearer(self, other: Self) -> Self {
-        if other.offset.norm_squared() < self.offset.norm_squared() {
-            other
-        } else {
-            self
-        }
+        if other.offset.norm_squared() < self.offset.norm_squared() { other } else { self }
     }
 }
 
@@ -119,9 +112,7 @@ fn vertex_triangle(points: &[Vector3<f64>; 4]) -> Closest {
     let on = |u: f64, v: f64, w: f64| Closest::new([1.0, -u, -v, -w], points);
     if ab.cross(&ac).norm_squared() <= FLAT_SHARE * ab.norm_squared() * ac.norm_squared() {
         let [s, t, u] = [[a, b], [b, c], [c, a]].map(|side| share(p, side));
-        return on(1.0 - s, s, 0.0)
-            .nearer(on(0.0, 1.0 - t, t))
-            .nearer(on(u, 0.0, 1.0 - u));
+        return on(1.0 - s, s, 0.0).nearer(on(0.0, 1.0 - t, t)).nearer(on(u, 0.0, 1.0 - u));
     }
     let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
     if d1 <= 0.0 && d2 <= 0.0 {
@@ -199,11 +190,7 @@ fn edge_edge(points: &[Vector3<f64>; 4]) -> Closest {
 fn share(p: Vector3<f64>, [a, b]: [Vector3<f64>; 2]) -> f64 {
     let along = b - a;
     let squared = along.norm_squared();
-    if squared > 0.0 {
-        ((p - a).dot(&along) / squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    }
+    if squared > 0.0 { ((p - a).dot(&along) / squared).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// Nearest point of a surface (m), and the unit normal there.
@@ -231,15 +218,8 @@ pub(crate) fn of_sphere(
     let squared = d.x * d.x + d.y * d.y + d.z * d.z;
     if squared < radius * radius {
         let distance = squared.sqrt();
-        let normal = if distance > 0.0 {
-            d / distance
-        } else {
-            aside()
-        };
-        Some(Nearest {
-            point: radius * normal,
-            normal,
-        })
+        let normal = if distance > 0.0 { d / distance } else { aside() };
+        Some(Nearest { point: radius * normal, normal })
     } else {
         None
     }
@@ -257,26 +237,16 @@ pub(crate) fn of_box(
     if !(0..3).all(|k| depth(k) > 0.0) {
         return None;
     }
-    let k = (1..3).fold(
-        0,
-        |k, other| if depth(other) < depth(k) { other } else { k },
-    );
+    let k = (1..3).fold(0, |k, other| if depth(other) < depth(k) { other } else { k });
     let normal = if local[k] < 0.0 { -axes[k] } else { axes[k] };
-    Some(Nearest {
-        point: d + normal * depth(k),
-        normal,
-    })
+    Some(Nearest { point: d + normal * depth(k), normal })
 }
 
 /// Returns a segment as a vector, and the share of it after which it is nearest to d.
 pub(super) fn along_axis([a, b]: [Vector3<f64>; 2], d: Vector3<f64>) -> (Vector3<f64>, f64) {
     let axis = b - a;
     let squared = axis.norm_squared();
-    let share = if squared > 0.0 {
-        ((d - a).dot(&axis) / squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let share = if squared > 0.0 { ((d - a).dot(&axis) / squared).clamp(0.0, 1.0) } else { 0.0 };
     (axis, share)
 }
 
@@ -289,18 +259,12 @@ pub(crate) fn of_capsule(
     let (axis, share) = along_axis([a, b], d);
     let middle = a + share * axis;
     let Nearest { point, normal } = of_sphere(d - middle, radius, || upwards(axis))?;
-    Some(Nearest {
-        point: middle + point,
-        normal,
-    })
+    Some(Nearest { point: middle + point, normal })
 }
 
 /// Returns the nearest point of a floor at height 0 to a point d below it.
 pub(crate) fn of_floor(d: Vector3<f64>) -> Option<Nearest> {
-    (d.y < 0.0).then(|| Nearest {
-        point: Vector3::new(d.x, 0.0, d.z),
-        normal: Vector3::y(),
-    })
+    (d.y < 0.0).then(|| Nearest { point: Vector3::new(d.x, 0.0, d.z), normal: Vector3::y() })
 }
 
 /// Returns the unit vector perpendicular to an axis that points upwards most steeply; along x if

@@ -80,12 +80,7 @@ pub(super) fn split(points: Vec<Vector3<f64>>, triangles: &[[u32; 3]]) -> Result
         *numbers.entry(parts.find(k)).or_insert(next)
     });
     let part_of = part_of.collect();
-    Ok(Parts {
-        count: numbers.len(),
-        part_of,
-        points,
-        triangles,
-    })
+    Ok(Parts { count: numbers.len(), part_of, points, triangles })
 }
 
 /// Lists the passages of triangles along edges, sorted by edge.
@@ -122,16 +117,8 @@ fn sort(sides: &mut Vec<Side>, [a, b]: [Vector3<f64>; 2], third: impl Fn(&Side) 
     let angle = |side: &Side| {
         let d = from_edge(side);
         let angle = libm::atan2(ahead.dot(&d), along.norm() * zero.dot(&d));
-        let angle = if angle < -ANGLE_TOLERANCE {
-            angle + turn
-        } else {
-            angle
-        };
-        if angle > turn - ANGLE_TOLERANCE {
-            0.0
-        } else {
-            angle
-        }
+        let angle = if angle < -ANGLE_TOLERANCE { angle + turn } else { angle };
+        if angle > turn - ANGLE_TOLERANCE { 0.0 } else { angle }
     };
     let mut sorted: Vec<_> = sides.iter().map(|side| (angle(side), *side)).collect();
     sorted.sort_by(|(a, _), (b, _)| a.total_cmp(b));

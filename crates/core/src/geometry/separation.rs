@@ -17,18 +17,12 @@ impl Shape {
         match self {
             Self::Sphere { radius } => around(d, *radius),
             Self::Box { half_extents, axes } => of_box(d, *half_extents, *axes),
-            Self::Capsule {
-                ends: [a, b],
-                radius,
-            } => {
+            Self::Capsule { ends: [a, b], radius } => {
                 let (axis, share) = along_axis([*a, *b], d);
                 around(d - (a + axis * share), *radius)
             }
             Self::Mesh(mesh) => mesh.separation(d),
-            Self::Floor => Separation {
-                distance: d.y,
-                normal: Vector3::y(),
-            },
+            Self::Floor => Separation { distance: d.y, normal: Vector3::y() },
         }
     }
 
@@ -83,10 +77,7 @@ impl Shape {
         match self {
             Self::Sphere { radius } => *radius,
             Self::Box { half_extents, .. } => half_extents.norm(),
-            Self::Capsule {
-                ends: [a, b],
-                radius,
-            } => a.norm().max(b.norm()) + radius,
+            Self::Capsule { ends: [a, b], radius } => a.norm().max(b.norm()) + radius,
             Self::Mesh(mesh) => mesh.reach(),
             Self::Floor => f64::INFINITY,
         }
@@ -108,21 +99,10 @@ fn of_box(d: Vector3<f64>, half_extents: Vector3<f64>, axes: [Vector3<f64>; 3]) 
     let beyond: [f64; 3] = std::array::from_fn(|k| local[k].abs() - half_extents[k]);
     let sign = |k: usize| if local[k] < 0.0 { -1.0 } else { 1.0 };
     let outside = (0..3).filter(|k| beyond[*k] > 0.0);
-    let offset = outside.fold(Vector3::zeros(), |sum, k| {
-        sum + axes[k] * (sign(k) * beyond[k])
-    });
+    let offset = outside.fold(Vector3::zeros(), |sum, k| sum + axes[k] * (sign(k) * beyond[k]));
     if let Some(normal) = offset.try_normalize(0.0) {
-        return Separation {
-            distance: offset.norm(),
-            normal,
-        };
+        return Separation { distance: offset.norm(), normal };
     }
-    let k = (1..3).fold(
-        0,
-        |k, other| if beyond[other] > beyond[k] { other } else { k },
-    );
-    Separation {
-        distance: beyond[k],
-        normal: axes[k] * sign(k),
-    }
+    let k = (1..3).fold(0, |k, other| if beyond[other] > beyond[k] { other } else { k });
+    Separation { distance: beyond[k], normal: axes[k] * sign(k) }
 }

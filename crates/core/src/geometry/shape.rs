@@ -96,14 +96,12 @@ impl Shape {
     /// Rounding reduces the volume of a mesh to zero.
     pub fn turned(&self, by: &Matrix3<f64>) -> Result<Self, Error> {
         Ok(match self {
-            Self::Box { half_extents, axes } => Self::Box {
-                half_extents: *half_extents,
-                axes: axes.map(|axis| by * axis),
-            },
-            Self::Capsule { ends, radius } => Self::Capsule {
-                ends: ends.map(|end| by * end),
-                radius: *radius,
-            },
+            Self::Box { half_extents, axes } => {
+                Self::Box { half_extents: *half_extents, axes: axes.map(|axis| by * axis) }
+            }
+            Self::Capsule { ends, radius } => {
+                Self::Capsule { ends: ends.map(|end| by * end), radius: *radius }
+            }
             Self::Mesh(mesh) => {
                 let points = mesh.points().iter().map(|point| by * point);
                 let turned = ClosedMesh::new(points.collect(), mesh.triangles().to_vec())?;
@@ -194,8 +192,7 @@ impl Shape {
             Self::Box { half_extents, axes } => {
                 let mut halves = half_extents.iter();
                 halves.try_for_each(|half| positive("half the extent of a box", *half))?;
-                axes.iter()
-                    .try_for_each(|axis| finite("an axis of a box", *axis))
+                axes.iter().try_for_each(|axis| finite("an axis of a box", *axis))
             }
             Self::Capsule { ends, radius } => {
                 let mut ends = ends.iter();

@@ -8,17 +8,9 @@ use crate::random::SplitMix;
 /// Creates a box between two corners, as points and triangles whose corners count from `first`.
 fn cuboid(low: [f64; 3], high: [f64; 3], first: u32) -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) {
     let points = (0..8).map(|k| Vector3::from_fn(|axis, _| [low, high][k >> axis & 1][axis]));
-    let faces = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let halves = faces
-        .iter()
-        .flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let halves = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
     let triangles = halves.map(|t| t.map(|i: u32| i + first));
     (points.collect(), triangles.collect())
 }
@@ -75,10 +67,7 @@ fn parts_decide_by_themselves_what_is_inside() {
             if turned[0] != turned[1] && what != "overlap" && what != "apart" {
                 continue;
             }
-            let mesh = boxes(&[
-                (corner.0, corner.1, turned[0]),
-                (second.0, second.1, turned[1]),
-            ]);
+            let mesh = boxes(&[(corner.0, corner.1, turned[0]), (second.0, second.1, turned[1])]);
             let mut random = SplitMix(3);
             for _ in 0..500 {
                 let d = random_point(&mut random) * 1.5 - Vector3::repeat(0.5);
@@ -117,10 +106,7 @@ fn holes_are_outside() {
             let [whole, hole, core] = [whole, hole, core].map(|(low, high)| distance(low, high, d));
             let is_inside = whole < 0.0 && hole > 0.0 || core < 0.0;
             assert_eq!(mesh.nearest(d).is_some(), is_inside, "{d}");
-            let expected = [whole, hole, core]
-                .map(f64::abs)
-                .into_iter()
-                .fold(9.0, f64::min);
+            let expected = [whole, hole, core].map(f64::abs).into_iter().fold(9.0, f64::min);
             let separation = mesh.separation(d);
             assert!((separation.distance.abs() - expected).abs() < 1e-12);
             assert_eq!(separation.distance < 0.0, is_inside);
@@ -134,12 +120,7 @@ fn parts_have_their_own_points() {
     let count = |second: ([f64; 3], [f64; 3])| {
         let mesh = boxes(&[([0.0; 3], [4.0; 3], false), (second.0, second.1, false)]);
         assert_eq!(mesh.edges().len(), 36);
-        (
-            mesh.points().len(),
-            mesh.normals()
-                .iter()
-                .all(|n| (n.norm() - 1.0).abs() < 1e-12),
-        )
+        (mesh.points().len(), mesh.normals().iter().all(|n| (n.norm() - 1.0).abs() < 1e-12))
     };
     assert_eq!(count(([4.0; 3], [5.0; 3])), (16, true));
     assert_eq!(count(([4.0, 0.0, 0.0], [6.0, 4.0, 4.0])), (16, true));

@@ -21,10 +21,7 @@ impl Default for Triangles {
 
 impl FromIterator<[u32; 3]> for Triangles {
     fn from_iter<I: IntoIterator<Item = [u32; 3]>>(all: I) -> Self {
-        Self {
-            all: all.into_iter().collect(),
-            split: OnceLock::new(),
-        }
+        Self { all: all.into_iter().collect(), split: OnceLock::new() }
     }
 }
 
@@ -48,9 +45,7 @@ impl Triangles {
             }
             let of = |open: bool| {
                 let all = self.all.iter().zip(&is_open);
-                all.filter(|(_, is_open)| **is_open == open)
-                    .map(|(corners, _)| *corners)
-                    .collect()
+                all.filter(|(_, is_open)| **is_open == open).map(|(corners, _)| *corners).collect()
             };
             [of(true), of(false)]
         });
@@ -60,9 +55,7 @@ impl Triangles {
 
 /// Returns whether each triangle belongs to an open surface.
 fn is_open(triangles: &[[u32; 3]]) -> Vec<bool> {
-    let sides = triangles
-        .iter()
-        .flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let sides = triangles.iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
     let mut sides: Vec<_> = sides.map(|[i, j]| [*i.min(j), *i.max(j)]).collect();
     sides.sort_unstable();
     let points = triangles.as_flattened().iter().max();

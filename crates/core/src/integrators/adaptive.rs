@@ -264,12 +264,7 @@ impl Adaptive {
         y: &mut [f64],
         (sizes, mut work): (&[f64], Work),
     ) -> Result<Taken, Error> {
-        let mut norm = ErrorNorm {
-            system,
-            tolerance: self.tolerance,
-            sizes,
-            h: self.next,
-        };
+        let mut norm = ErrorNorm { system, tolerance: self.tolerance, sizes, h: self.next };
         if norm.h == 0.0 {
             norm.h = self.first_step(t, y, &norm);
             work += Work::of(1);
@@ -287,11 +282,7 @@ impl Adaptive {
             if error <= 1.0 {
                 copy(self.trial.end(), y);
                 // After a rejection, the next step is not longer than this one.
-                let most = if work.rejections > 0 {
-                    1.0
-                } else {
-                    STEP_RATIOS.1
-                };
+                let most = if work.rejections > 0 { 1.0 } else { STEP_RATIOS.1 };
                 self.next = h * change.clamp(STEP_RATIOS.0, most);
                 if h == longest {
                     // It was shortened by `longest`, not because of its error.
@@ -323,11 +314,7 @@ impl Adaptive {
                 }
             }
             // NaN counts as the worst error.
-            norm.h *= if change >= STEP_RATIOS.0 {
-                change
-            } else {
-                STEP_RATIOS.0
-            };
+            norm.h *= if change >= STEP_RATIOS.0 { change } else { STEP_RATIOS.0 };
         }
     }
 
@@ -347,11 +334,8 @@ impl Adaptive {
         if slope.is_nan() {
             return FIRST_STEPS.0;
         }
-        let longest = if slope.is_finite() && !norm.sizes.is_empty() {
-            slope
-        } else {
-            FIRST_STEPS.0
-        };
+        let longest =
+            if slope.is_finite() && !norm.sizes.is_empty() { slope } else { FIRST_STEPS.0 };
         let h = (0.01 * slope).min(longest);
         if let Some(second) = self.trial.second_derivative() {
             f1.copy_from_slice(second);

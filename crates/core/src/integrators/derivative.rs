@@ -20,12 +20,7 @@ impl<'a> Derivative<'a> {
     /// [`Integrator`](super::Integrator).
     #[must_use]
     pub fn new(system: &'a dyn ParticleSystem) -> Self {
-        Self {
-            system,
-            dim: system.dim(),
-            evaluations: 0,
-            most: f64::INFINITY,
-        }
+        Self { system, dim: system.dim(), evaluations: 0, most: f64::INFINITY }
     }
 
     /// Refuses evaluations beyond this number.

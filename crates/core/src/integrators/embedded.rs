@@ -54,11 +54,7 @@ pub(super) struct EmbeddedPair {
 impl EmbeddedPair {
     pub fn new(tableau: &'static Tableau, dim: usize) -> Self {
         let stages = tableau.stages.len() + 2 + tableau.extra.len();
-        Self {
-            tableau,
-            stage: vec![0.0; dim],
-            last: LastStep::new(dim, stages),
-        }
+        Self { tableau, stage: vec![0.0; dim], last: LastStep::new(dim, stages) }
     }
 
     /// Evaluates the stages of a step of h (s) after [`begin`](Self::begin) or
@@ -177,14 +173,7 @@ impl Trial for EmbeddedPair {
         let LastStep { y0, y1, k, .. } = &mut self.last;
         let bands = threads(y0.len() / 6);
         let [error, other] = norm.of_sums(|numbers, allowed| {
-            let end = End {
-                tableau,
-                h,
-                y0,
-                k,
-                forms: !forms,
-                allowed,
-            };
+            let end = End { tableau, h, y0, k, forms: !forms, allowed };
             let y1 = &mut y1[numbers.clone()];
             add_up(bands, numbers, BLOCK, [y1], &end)
         });

@@ -133,11 +133,7 @@ impl ErrorNorm<'_> {
         });
         times.fold(f64::INFINITY, |least, time| {
             // NaN is returned as such.
-            if time < least || time.is_nan() {
-                time
-            } else {
-                least
-            }
+            if time < least || time.is_nan() { time } else { least }
         })
     }
 
@@ -182,18 +178,17 @@ impl ErrorNorm<'_> {
         });
         let Tolerance { relative, absolute } = self.tolerance;
         let all = all.into_iter().enumerate();
-        all.filter(|(_, sums)| sums.count > 0.0)
-            .map(move |(quantity, sums)| {
-                let mean = |sum: f64| (sum / sums.count).sqrt();
-                let own = relative * mean(sums.y0).max(mean(sums.y1));
-                let (fixed, rate) = match quantity {
-                    1 => (absolute, 0.0),
-                    2 | 4 => (own, FLOOR_SHARE * absolute),
-                    PLAIN => (1.0, 0.0),
-                    _ => (own + FLOOR_SHARE * absolute, 0.0),
-                };
-                (sums.errors.map(mean), Tolerated { fixed, rate })
-            })
+        all.filter(|(_, sums)| sums.count > 0.0).map(move |(quantity, sums)| {
+            let mean = |sum: f64| (sum / sums.count).sqrt();
+            let own = relative * mean(sums.y0).max(mean(sums.y1));
+            let (fixed, rate) = match quantity {
+                1 => (absolute, 0.0),
+                2 | 4 => (own, FLOOR_SHARE * absolute),
+                PLAIN => (1.0, 0.0),
+                _ => (own + FLOOR_SHARE * absolute, 0.0),
+            };
+            (sums.errors.map(mean), Tolerated { fixed, rate })
+        })
     }
 }
 

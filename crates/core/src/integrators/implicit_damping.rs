@@ -70,11 +70,7 @@ enum Solver {
         k: [Vec<f64>; 2],
     },
     /// For any other, small system.
-    Dense {
-        linear: Box<Dense>,
-        base: Vec<f64>,
-        k1: Vec<f64>,
-    },
+    Dense { linear: Box<Dense>, base: Vec<f64>, k1: Vec<f64> },
 }
 
 /// The rates of velocities, and of angular momenta, by a kick at a time (s) at fixed positions.
@@ -185,10 +181,9 @@ impl Solver {
                 add_scaled(y, 0.5 / G, linear.change());
                 Ok(work)
             }
-            (Self::Sparse { .. }, None) => Err(Error::Unsupported {
-                method: METHOD.name,
-                why: Refusal::LacksMasses,
-            }),
+            (Self::Sparse { .. }, None) => {
+                Err(Error::Unsupported { method: METHOD.name, why: Refusal::LacksMasses })
+            }
         }
     }
 }
@@ -204,14 +199,7 @@ impl ParticleSystem for Kicked<'_> {
         } else if let Some(mechanics) = self.0.mechanics() {
             let half = y.len() / 2;
             dydt[..half].fill(0.0);
-            kick(
-                mechanics,
-                TERMS,
-                t,
-                &y[..half],
-                &y[half..],
-                &mut dydt[half..],
-            );
+            kick(mechanics, TERMS, t, &y[..half], &y[half..], &mut dydt[half..]);
         }
     }
 
@@ -247,10 +235,7 @@ fn drift_of(system: &dyn ParticleSystem, t: f64, h: f64, y: &mut [f64]) -> Resul
             drift(mechanics, TERMS, t, h, x, v);
         }
         (None, None) => {
-            return Err(Error::Unsupported {
-                method: METHOD.name,
-                why: Refusal::LacksMasses,
-            });
+            return Err(Error::Unsupported { method: METHOD.name, why: Refusal::LacksMasses });
         }
     }
     Ok(())

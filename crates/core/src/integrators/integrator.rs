@@ -42,12 +42,5 @@ pub trait Integrator: Send {
 
 /// Checks that `y` has the length `expected`.
 pub(super) fn check_dim(expected: usize, y: &[f64]) -> Result<(), Error> {
-    if y.len() == expected {
-        Ok(())
-    } else {
-        Err(Error::Dimension {
-            expected,
-            found: y.len(),
-        })
-    }
+    if y.len() == expected { Ok(()) } else { Err(Error::Dimension { expected, found: y.len() }) }
 }

@@ -27,12 +27,8 @@ pub(super) static SYMPLECTIC_EULER_PLAN: Plan = Plan {
     damped: Some(SYMPLECTIC_EULER_KICK),
 };
 
-const SYMPLECTIC_EULER_KICK: Kicks = Kicks {
-    steps: &[(0.0, 1.0)],
-    last: 1.0,
-    table: EULER,
-    ahead: &[],
-};
+const SYMPLECTIC_EULER_KICK: Kicks =
+    Kicks { steps: &[(0.0, 1.0)], last: 1.0, table: EULER, ahead: &[] };
 
 /// Verlet's method as drift-kick-drift: half a step of the exact flow under drag and gravity, a
 /// kick of a whole step by the other forces, and half a step of the flow again. Without drag and
@@ -66,18 +62,9 @@ pub(super) const VERLET: Method = Method {
 pub(super) static VERLET_PLAN: Plan = Plan {
     name: "verlet",
     terms: Terms::KickForces,
-    free: Kicks {
-        steps: &[(0.5, 1.0)],
-        last: 0.5,
-        table: EULER,
-        ahead: &[],
-    },
+    free: Kicks { steps: &[(0.5, 1.0)], last: 0.5, table: EULER, ahead: &[] },
     damped: Some(Kicks {
-        steps: &[
-            (1.0 / 6.0, 1.0 / 3.0),
-            (1.0 / 3.0, 1.0 / 3.0),
-            (1.0 / 3.0, 1.0 / 3.0),
-        ],
+        steps: &[(1.0 / 6.0, 1.0 / 3.0), (1.0 / 3.0, 1.0 / 3.0), (1.0 / 3.0, 1.0 / 3.0)],
         last: 1.0 / 6.0,
         table: EULER,
         // h/2 a1 and h (3/5 a1 + 2/5 a2), less the previous kicks.

@@ -190,10 +190,7 @@ impl Method {
     pub fn check(&self, system: &dyn ParticleSystem) -> Result<(), Error> {
         match self.refusal(system) {
             None => Ok(()),
-            Some(why) => Err(Error::Unsupported {
-                method: self.title,
-                why,
-            }),
+            Some(why) => Err(Error::Unsupported { method: self.title, why }),
         }
     }
 
@@ -364,11 +361,7 @@ impl Method {
     /// step (s) of any other.
     #[must_use]
     pub fn control(&self, value: f64) -> Control {
-        if self.is_adaptive() {
-            Control::Tolerance(value)
-        } else {
-            Control::Step(value)
-        }
+        if self.is_adaptive() { Control::Tolerance(value) } else { Control::Step(value) }
     }
 }
 
@@ -382,21 +375,14 @@ impl PartialEq for Method {
 /// Returns the refusal of a system with constraints that offers no view of them.
 fn refusal_of_joints(system: Option<&dyn Linearized>) -> Refusal {
     let touches = system.is_some_and(|system| !system.hints().pattern_is_fixed());
-    if touches {
-        Refusal::HoldsTouching
-    } else {
-        Refusal::HoldsConstraints
-    }
+    if touches { Refusal::HoldsTouching } else { Refusal::HoldsConstraints }
 }
 
 /// Returns the refusal of a system that is too large for the Jacobian of its f, if it is.
 fn refusal_by_size(system: &dyn ParticleSystem) -> Option<Refusal> {
     let mut numbers = 0;
     system.measures(&mut |of, _| numbers += of.len());
-    (numbers > MAX_DENSE).then_some(Refusal::TooLarge {
-        numbers,
-        most: MAX_DENSE,
-    })
+    (numbers > MAX_DENSE).then_some(Refusal::TooLarge { numbers, most: MAX_DENSE })
 }
 
 /// Own methods, in the order in which they were added.

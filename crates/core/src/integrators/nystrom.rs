@@ -70,10 +70,7 @@ fn drag(system: &dyn ParticleSystem) -> Option<(&dyn Mechanics, Drag<'_>)> {
 
 /// Returns the error of a method if forces depend on the velocity.
 fn refused(method: &'static str) -> Error {
-    Error::Unsupported {
-        method,
-        why: Refusal::ReadsVelocity,
-    }
+    Error::Unsupported { method, why: Refusal::ReadsVelocity }
 }
 
 /// Viscous drag of a system.
@@ -216,12 +213,7 @@ impl NystromPair {
     /// Creates the step of h (s) from t (s) with this system, if the system allows it.
     fn of(system: &dyn ParticleSystem, t: f64, h: f64) -> Option<Step<'_>> {
         let (mechanics, drag) = drag(system)?;
-        Some(Step {
-            mechanics,
-            drag,
-            t,
-            h,
-        })
+        Some(Step { mechanics, drag, t, h })
     }
 
     /// Evaluates the stages of a step after [`begin`](Trial::begin) or
@@ -235,8 +227,7 @@ impl NystromPair {
             step.positions(s, a, Some(y0), k, &mut self.x);
             self.v.fill(0.0);
             place_pins(step.mechanics, step.t + s, &mut self.x, &mut self.v);
-            step.mechanics
-                .accelerations(step.t + s, &self.x, &self.v, &mut k[i + 1]);
+            step.mechanics.accelerations(step.t + s, &self.x, &self.v, &mut k[i + 1]);
             step.substitute(s, &self.x, y0, &mut k[i + 1]);
         }
         step.state(step.h, tableau.weights, Some(y0), k, y1);
@@ -251,8 +242,7 @@ impl NystromPair {
             return Work::default();
         };
         self.v.fill(0.0);
-        step.mechanics
-            .accelerations(step.t + step.h, x1, &self.v, end);
+        step.mechanics.accelerations(step.t + step.h, x1, &self.v, end);
         as_stage.copy_from_slice(end);
         step.substitute(step.h, x1, y0, as_stage);
         Work::of(1)
@@ -282,8 +272,7 @@ impl Trial for NystromPair {
         self.last.y0.copy_from_slice(y);
         self.v.fill(0.0);
         let x0 = &y[..self.x.len()];
-        step.mechanics
-            .accelerations(t, x0, &self.v, &mut self.last.k[0]);
+        step.mechanics.accelerations(t, x0, &self.v, &mut self.last.k[0]);
         Work::of(1)
     }
 

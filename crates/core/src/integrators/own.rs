@@ -137,11 +137,7 @@ impl Method {
         let step: &'static Step = Box::leak(Box::new(step));
         let named = name.clone();
         Self::new(name, order, move |system| {
-            Box::new(Stepped {
-                name: named.clone(),
-                dim: system.dim(),
-                step,
-            })
+            Box::new(Stepped { name: named.clone(), dim: system.dim(), step })
         })
     }
 
@@ -179,10 +175,7 @@ impl Method {
             move |f: &mut Derivative, t: f64, y: &[f64], h: f64| step(f, t, y, h).map(R::into);
         let create = Create::OwnTrial(Box::leak(Box::new(step)));
         let method = Self::made(name.into(), order, create)?;
-        Ok(Self {
-            default_control: Control::Tolerance(DEFAULT_TOLERANCE),
-            ..method
-        })
+        Ok(Self { default_control: Control::Tolerance(DEFAULT_TOLERANCE), ..method })
     }
 
     /// Creates an explicit Runge-Kutta method from its tableau: rows of the weights `a_ij` of each
@@ -233,10 +226,7 @@ impl Method {
             Some(_) => Control::Tolerance(DEFAULT_TOLERANCE),
             None => Control::Step(DEFAULT_STEP),
         };
-        Ok(Self {
-            default_control: control,
-            ..method.with_evaluations(b.len() as u32)
-        })
+        Ok(Self { default_control: control, ..method.with_evaluations(b.len() as u32) })
     }
 
     /// Creates a method from a solver of another library, so that a chart measures it beside
@@ -260,10 +250,7 @@ impl Method {
     ) -> Result<Self, Error> {
         let create = Create::Foreign(Box::leak(Box::new(solve)));
         let method = Self::made(name.into(), 1, create)?;
-        Ok(Self {
-            default_control: Control::Tolerance(DEFAULT_TOLERANCE),
-            ..method
-        })
+        Ok(Self { default_control: Control::Tolerance(DEFAULT_TOLERANCE), ..method })
     }
 
     /// Replaces the full title, for legends and errors.
@@ -277,11 +264,7 @@ impl Method {
     /// searches end by it. What a run has cost is counted.
     #[must_use]
     pub fn with_evaluations(self, evaluations: u32) -> Self {
-        Self {
-            evaluations: evaluations.max(1),
-            damped_evaluations: evaluations.max(1),
-            ..self
-        }
+        Self { evaluations: evaluations.max(1), damped_evaluations: evaluations.max(1), ..self }
     }
 
     /// Replaces the view of a system that the method steps with. Systems that lack it are refused.
@@ -293,10 +276,7 @@ impl Method {
     /// Replaces the default step (s).
     #[must_use]
     pub fn with_default_step(self, step: f64) -> Self {
-        Self {
-            default_control: Control::Step(step),
-            ..self
-        }
+        Self { default_control: Control::Step(step), ..self }
     }
 
     /// Makes the method one that lives as long as the program, as the rows of the table do, and
@@ -315,11 +295,8 @@ impl Method {
 fn check_name(name: &str, has_words: bool) -> Result<(), Error> {
     let is_wrong = |c: char| c.is_control() || c.is_whitespace() && !(has_words && c == ' ');
     if name.trim().is_empty() || name.contains(is_wrong) || name.len() > MAX_NAME {
-        let (kind, example) = if has_words {
-            ("a text", "SciPy RK45")
-        } else {
-            ("a word", "my-heun")
-        };
+        let (kind, example) =
+            if has_words { ("a text", "SciPy RK45") } else { ("a word", "my-heun") };
         return Err(Error::Invalid(format!(
             "a method's name is {kind} of at most {MAX_NAME} bytes, such as {example}, not `{}`",
             name.escape_debug()

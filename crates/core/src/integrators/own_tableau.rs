@@ -165,11 +165,7 @@ fn order_of(stages: &[Vec<f64>], b: &[f64]) -> u32 {
             }
             let sums = |row: &Vec<f64>| row.iter().zip(&u).map(|(a, u)| a * u).sum();
             let above = stages.iter().map(sums).collect();
-            trees.push(Tree {
-                nodes,
-                above,
-                share,
-            });
+            trees.push(Tree { nodes, above, share });
         }
     }
     MAX_ORDER as u32
@@ -216,10 +212,7 @@ mod tests {
         assert_eq!(order_of(&classical, &[0.3; 4]), 0);
         let mut pairs = 0;
         for method in METHODS {
-            let Create::Embedded(Tableau {
-                stages, weights, ..
-            }) = method.create
-            else {
+            let Create::Embedded(Tableau { stages, weights, .. }) = method.create else {
                 continue;
             };
             let rows = stages.iter().map(|(_, row)| row.to_vec());

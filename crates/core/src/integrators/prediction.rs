@@ -18,10 +18,7 @@ pub(super) struct Prediction {
 impl Prediction {
     /// Creates a prediction for a system of n particles.
     pub fn new(particles: usize) -> Self {
-        Self {
-            f: vec![0.0; 3 * particles],
-            inverse_masses: vec![0.0; particles],
-        }
+        Self { f: vec![0.0; 3 * particles], inverse_masses: vec![0.0; particles] }
     }
 
     /// Advances x and v from t to t + h (s) as if there were no springs.
@@ -57,18 +54,13 @@ pub(super) fn springs_of<'a>(
     let mechanics = system.mechanics();
     mechanics
         .and_then(Mechanics::compliant)
-        .ok_or(Error::Unsupported {
-            method,
-            why: Refusal::LacksSprings,
-        })
+        .ok_or(Error::Unsupported { method, why: Refusal::LacksSprings })
 }
 
 /// Returns the work of iterations over all springs: each counts as an evaluation and, for the rest
 /// of its cost (in evaluations of forces spring by spring), as linear algebra.
 pub(super) fn work(system: &dyn Compliant, iterations: u32, price: f64) -> Work {
-    let speed = system
-        .linearized()
-        .map_or(1.0, |system| system.hints().speed);
+    let speed = system.linearized().map_or(1.0, |system| system.hints().speed);
     Work {
         evaluations: iterations.into(),
         algebra: f64::from(iterations) * (speed * price - 1.0),

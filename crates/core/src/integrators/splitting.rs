@@ -94,9 +94,7 @@ impl Plan {
     /// Drifts and kicks for this system: those for forces without velocities, if the method
     /// supports no others.
     fn kicks(&self, system: &dyn ParticleSystem) -> Kicks {
-        self.damped
-            .filter(|_| reads_velocity(system))
-            .unwrap_or(self.free)
+        self.damped.filter(|_| reads_velocity(system)).unwrap_or(self.free)
     }
 
     /// Returns the number of stages in a sweep: as many whole kicks as fit, at least one.
@@ -110,36 +108,26 @@ impl Kicks {
     /// Lists the stages of a step from t to t + h (s).
     fn stages(self, terms: Terms, t: f64, h: f64) -> impl Iterator<Item = Stage> {
         let mut now = t;
-        self.steps
-            .iter()
-            .enumerate()
-            .flat_map(move |(i, (drift, length))| {
-                now += drift * h;
-                let (start, is_ahead) = (now, (1..=self.ahead.len()).contains(&i));
-                let drift = self.steps.get(i + 1).map_or(self.last, |(drift, _)| *drift) * h;
-                let next = self
-                    .ahead
-                    .get(i)
-                    .map_or(Next::Sum, |(keep, add)| Next::Ahead {
-                        keep: *keep,
-                        add: add * h,
-                    });
-                stages(self.table, terms, now, length * h).map(move |stage| match stage.next {
-                    Next::Sum => Stage {
-                        t: start,
-                        until: start + drift,
-                        first: stage.first && !is_ahead,
-                        next,
-                        drift,
-                        ..stage
-                    },
-                    _ => Stage {
-                        t: start,
-                        until: start,
-                        ..stage
-                    },
-                })
+        self.steps.iter().enumerate().flat_map(move |(i, (drift, length))| {
+            now += drift * h;
+            let (start, is_ahead) = (now, (1..=self.ahead.len()).contains(&i));
+            let drift = self.steps.get(i + 1).map_or(self.last, |(drift, _)| *drift) * h;
+            let next = self
+                .ahead
+                .get(i)
+                .map_or(Next::Sum, |(keep, add)| Next::Ahead { keep: *keep, add: add * h });
+            stages(self.table, terms, now, length * h).map(move |stage| match stage.next {
+                Next::Sum => Stage {
+                    t: start,
+                    until: start + drift,
+                    first: stage.first && !is_ahead,
+                    next,
+                    drift,
+                    ..stage
+                },
+                _ => Stage { t: start, until: start, ..stage },
             })
+        })
     }
 }
 
@@ -154,10 +142,7 @@ impl Integrator for SplittingMethod {
         check_dim(self.dim, y)?;
         let plan = self.plan;
         if plan.damped.is_none() && reads_velocity(system) {
-            return Err(Error::Unsupported {
-                method: plan.name,
-                why: Refusal::ReadsVelocity,
-            });
+            return Err(Error::Unsupported { method: plan.name, why: Refusal::ReadsVelocity });
         }
         let kicks = plan.kicks(system);
         let lead = (t, kicks.steps[0].0 * h);

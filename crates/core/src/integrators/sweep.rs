@@ -62,11 +62,7 @@ impl Sweeper {
             }));
         }
         all.sort_by_key(Band::first);
-        Self {
-            patches,
-            stages,
-            bands: all,
-        }
+        Self { patches, stages, bands: all }
     }
 
     /// Returns whether the sweeper is for this system and number of stages.
@@ -82,11 +78,7 @@ impl Sweeper {
         }
         let mut columns = y.chunks_exact_mut(y.len() / 6);
         let columns = array::from_fn(|_| columns.next().unwrap_or_default());
-        let job = Job {
-            system,
-            lead,
-            stages,
-        };
+        let job = Job { system, lead, stages };
         fork(&mut self.bands, &job, columns);
     }
 }
@@ -173,11 +165,7 @@ impl Band {
 
     /// Advances its rows of y through the stages.
     fn step(&mut self, job: &Job, mut y: Columns<6>) {
-        let Job {
-            system,
-            lead,
-            stages,
-        } = job;
+        let Job { system, lead, stages } = job;
         system.begin(self.number, &mut self.scratch);
         let (mut loaded, mut front) = (self.seen.start, self.seen.start);
         loop {
@@ -198,9 +186,7 @@ impl Band {
                 let more = REACH * (stages.len() - 1 - number);
                 let first = self.rows.start.saturating_sub(more + REACH);
                 let end = (self.rows.end + more).min(self.seen.end);
-                let from = (front - self.block)
-                    .saturating_sub(REACH * number)
-                    .max(first);
+                let from = (front - self.block).saturating_sub(REACH * number).max(first);
                 let to = front.saturating_sub(REACH * number).min(end);
                 if from < to {
                     system.advance(
@@ -259,12 +245,8 @@ pub(super) type Table = &'static [(f64, f64)];
 pub(super) const EULER: Table = &[(0.0, 1.0)];
 pub(super) const HEUN: Table = &[(0.0, 0.5), (1.0, 0.5)];
 pub(super) const MIDPOINT: Table = &[(0.0, 0.0), (0.5, 1.0)];
-pub(super) const RK4: Table = &[
-    (0.0, 1.0 / 6.0),
-    (0.5, 1.0 / 3.0),
-    (0.5, 1.0 / 3.0),
-    (1.0, 1.0 / 6.0),
-];
+pub(super) const RK4: Table =
+    &[(0.0, 1.0 / 6.0), (0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)];
 
 /// Lists the stages of a step from t to t + h (s).
 pub(super) fn stages(table: Table, terms: Terms, t: f64, h: f64) -> impl Iterator<Item = Stage> {
@@ -274,9 +256,7 @@ pub(super) fn stages(table: Table, terms: Terms, t: f64, h: f64) -> impl Iterato
         until: table.get(i + 1).map_or(t + h, |(c, _)| t + c * h),
         first: i == 0,
         b: h * b,
-        next: table
-            .get(i + 1)
-            .map_or(Next::Sum, |(c, _)| Next::FromY(h * c)),
+        next: table.get(i + 1).map_or(Next::Sum, |(c, _)| Next::FromY(h * c)),
         drift: 0.0,
     })
 }
@@ -453,9 +433,7 @@ mod tests {
         };
         let mut y = scene.state.clone();
         for k in 0..5 {
-            method
-                .step(system, 1e-3 * f64::from(k), 1e-3, &mut y)
-                .unwrap();
+            method.step(system, 1e-3 * f64::from(k), 1e-3, &mut y).unwrap();
         }
         assert!(y.iter().all(|y| y.is_finite()) && y != scene.state);
         y
@@ -464,10 +442,7 @@ mod tests {
     #[test]
     #[cfg_attr(miri, ignore = "takes hours there")]
     fn sweeps_in_any_bands_give_the_bits_of_whole_arrays() {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(3)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
         for (rows, cols) in [(2, 2), (3, 7), (20, 20), (9, 300), (70, 5)] {
             for damping_time in [0.0, 5e-4] {
                 let scene = cloth(Grid::new(rows, cols).unwrap(), damping_time);
@@ -500,13 +475,7 @@ mod tests {
         let grid = Grid::new(11, 13).unwrap();
         let scene = cloth(grid, 5e-4);
         let system = scene.model.system();
-        let sweeper = || {
-            Some(Sweeper::with_bands(
-                rows_of(system).unwrap(),
-                RK4.len(),
-                |_| 2,
-            ))
-        };
+        let sweeper = || Some(Sweeper::with_bands(rows_of(system).unwrap(), RK4.len(), |_| 2));
         let step = |method: &mut RungeKutta, mut y: Vec<f64>| {
             method.step(system, 0.0, 1e-3, &mut y).unwrap();
             y

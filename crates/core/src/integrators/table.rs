@@ -113,10 +113,7 @@ mod tests {
                 .into_iter()
                 .chain(m.aliases.iter().copied())
             {
-                assert!(
-                    seen.insert(name.to_owned()),
-                    "{name} stands for two methods"
-                );
+                assert!(seen.insert(name.to_owned()), "{name} stands for two methods");
                 assert!(std::ptr::eq(find(name).unwrap(), m));
             }
         }

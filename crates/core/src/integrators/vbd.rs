@@ -86,11 +86,7 @@ impl Ends {
             let count = std::mem::replace(until, sum);
             sum += count;
         }
-        let none = SpringLaw {
-            stiffness: 0.0,
-            rest_length: 0.0,
-            damping: 0.0,
-        };
+        let none = SpringLaw { stiffness: 0.0, rest_length: 0.0, damping: 0.0 };
         springs.resize(sum, (0, none));
         system.springs(&mut |[i, j], law| {
             for (end, other) in [(i, j), (j, i)] {
@@ -103,9 +99,7 @@ impl Ends {
     /// Lists the springs of each particle, in the order of particles.
     fn by_particle(&self) -> impl Iterator<Item = &[(usize, SpringLaw)]> {
         let starts = std::iter::once(0).chain(self.until.iter().copied());
-        starts
-            .zip(&self.until)
-            .map(|(start, until)| &self.springs[start..*until])
+        starts.zip(&self.until).map(|(start, until)| &self.springs[start..*until])
     }
 }
 
@@ -117,12 +111,7 @@ impl Integrator for Vbd {
         h: f64,
         y: &mut [f64],
     ) -> Result<Work, Error> {
-        let Self {
-            iterations,
-            prediction,
-            predicted,
-            ends,
-        } = self;
+        let Self { iterations, prediction, predicted, ends } = self;
         check_dim(2 * predicted.len(), y)?;
         let system = springs_of(system, METHOD.name)?;
         let (x, v) = y.split_at_mut(predicted.len());

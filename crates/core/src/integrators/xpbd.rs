@@ -85,11 +85,7 @@ impl Integrator for Xpbd {
         h: f64,
         y: &mut [f64],
     ) -> Result<Work, Error> {
-        let Self {
-            iterations,
-            prediction,
-            impulses,
-        } = self;
+        let Self { iterations, prediction, impulses } = self;
         check_dim(6 * prediction.inverse_masses.len(), y)?;
         let system = springs_of(system, METHOD.name)?;
         let (x, v) = y.split_at_mut(y.len() / 2);
@@ -192,9 +188,6 @@ mod tests {
         let [one, ten, many, more] = [1, 10, 1000, 2000].map(of);
         println!("{one:e} {ten:e} {many:e} {more:e}");
         assert!(ten < one && many < 0.1 * one, "{one:e} {ten:e} {many:e}");
-        assert!(
-            many > 1e-6 && (more / many - 1.0).abs() < 1e-6,
-            "{many:e} {more:e}"
-        );
+        assert!(many > 1e-6 && (more / many - 1.0).abs() < 1e-6, "{many:e} {more:e}");
     }
 }

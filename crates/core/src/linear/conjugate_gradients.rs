@@ -132,28 +132,18 @@ impl ConjugateGradients {
     /// Updates the residual after a step along p, r -= step q. Returns r . r and r . z, where z is
     /// the preconditioned residual.
     fn descend(&mut self, step: f64, multigrid: Option<&mut Multigrid>) -> [f64; 2] {
-        let Self {
-            r, z, q, inverses, ..
-        } = self;
+        let Self { r, z, q, inverses, .. } = self;
         let ([a, b, c], [d, e, f]) = (columns_mut(r), columns_mut(z));
         let task = Descent { step, q, inverses };
         let [rr, rz] = add_up(q.len() / 3, [a, b, c, d, e, f], &task);
-        [
-            rr,
-            rz + multigrid.map_or(0.0, |multigrid| multigrid.solve(r)),
-        ]
+        [rr, rz + multigrid.map_or(0.0, |multigrid| multigrid.solve(r))]
     }
 
     /// Takes a step, x += step p, and forms the next direction, p = z + turn p.
     fn turn(&mut self, [step, turn]: [f64; 2], x: &mut [f64], multigrid: Option<&Multigrid>) {
         let Self { z, p, .. } = self;
         let ([a, b, c], [d, e, f]) = (columns_mut(x), columns_mut(p));
-        let task = Turn {
-            step,
-            share: turn,
-            z,
-            multigrid,
-        };
+        let task = Turn { step, share: turn, z, multigrid };
         add_up(z.len() / 3, [a, b, c, d, e, f], &task);
     }
 }

@@ -43,10 +43,7 @@ impl DampingSolver {
     /// Assembles M + a C at time t (s) at x.
     pub fn assemble(&mut self, system: &dyn Linearized, (t, a): (f64, f64), x: &[f64]) -> Work {
         self.tangent.assemble(system, (t, a), x, true);
-        Work {
-            algebra: system.hints().assembly,
-            ..Work::default()
-        }
+        Work { algebra: system.hints().assembly, ..Work::default() }
     }
 
     /// Solves (M + a C) k = b. Pinned particles are filtered out: b and k become 0 there.
@@ -59,18 +56,10 @@ impl DampingSolver {
         b: &mut [f64],
         k: &mut [f64],
     ) -> Result<Work, Error> {
-        let Self {
-            tangent,
-            iterative,
-            residual,
-            change,
-        } = self;
+        let Self { tangent, iterative, residual, change } = self;
         tangent.filter(b);
         let masses = tangent.masses();
-        for (k, b) in k
-            .chunks_exact_mut(masses.len())
-            .zip(b.chunks_exact(masses.len()))
-        {
+        for (k, b) in k.chunks_exact_mut(masses.len()).zip(b.chunks_exact(masses.len())) {
             for ((k, b), m) in k.iter_mut().zip(b).zip(masses) {
                 *k = if *m == 0.0 { 0.0 } else { b / m };
             }
@@ -82,11 +71,7 @@ impl DampingSolver {
         let ratio = (0.5 * tangent.stiffness()).clamp(MIN_RATIO, 1.0);
         let tolerance = TOLERANCE * ratio.powi(3) * (dot(b, b) / dot(residual, residual)).sqrt();
         let price = system.hints().iteration;
-        let mut work = Work {
-            solves: 1,
-            algebra: price,
-            ..Work::default()
-        };
+        let mut work = Work { solves: 1, algebra: price, ..Work::default() };
         if tolerance < 1.0 {
             let (matrix, ends) = ((&*tangent, None), (tolerance, MAX_ITERATIONS));
             let solution = iterative.solve(system, matrix, residual, change, ends);

@@ -119,10 +119,7 @@ impl Solver {
         if self.direct.as_ref().is_some_and(|d| !d.fits(&self.tangent)) {
             (self.direct, self.analysed) = (None, false);
         }
-        Work {
-            algebra: system.hints().assembly,
-            ..Work::default()
-        }
+        Work { algebra: system.hints().assembly, ..Work::default() }
     }
 
     /// Returns the stiffness of the step: an upper bound on a2 w2 for the fastest motion.
@@ -156,15 +153,10 @@ impl Solver {
             self.analyse(system);
         }
         let price = self.direct.as_ref().map_or(f64::INFINITY, |direct| {
-            let factorisation = if self.factorised {
-                0.0
-            } else {
-                direct.factorisation
-            };
+            let factorisation = if self.factorised { 0.0 } else { direct.factorisation };
             factorisation + direct.solution
         });
-        self.direct_always
-            .unwrap_or(worth_analysing && price * self.speed < iterative)
+        self.direct_always.unwrap_or(worth_analysing && price * self.speed < iterative)
     }
 
     /// Factorises A, or prepares it for multigrid, if that makes a solve to a relative residual

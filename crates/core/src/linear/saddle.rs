@@ -34,10 +34,7 @@ impl Saddle {
     /// Analyses the pattern of a tangent with constraints; `None` if memory is insufficient.
     pub fn new(tangent: &Tangent, joints: &[Joint]) -> Option<Self> {
         let n = tangent.particles();
-        let ends: Vec<_> = joints
-            .iter()
-            .map(|joint| joint.ends.map(|end| end as u32))
-            .collect();
+        let ends: Vec<_> = joints.iter().map(|joint| joint.ends.map(|end| end as u32)).collect();
         let pattern = Pattern::tied(n, tangent.pairs(), &ends)?;
         let mut factor = Factor::new(&pattern)?;
         (n..n + ends.len()).for_each(|row| factor.set_negative(&pattern, row));
@@ -69,29 +66,17 @@ impl Saddle {
         impulses: &[f64],
         (a, clamped): (f64, bool),
     ) -> bool {
-        let Self {
-            pattern,
-            factor,
-            places,
-            ties,
-            ..
-        } = self;
+        let Self { pattern, factor, places, ties, .. } = self;
         fill(tangent, pattern, factor, places);
         let n = tangent.particles();
         let is_free = |i: usize| tangent.masses()[i] != 0.0;
         let [xx, yy, zz, ..] = tangent.diagonal();
-        for (k, ((joint, impulses), ties)) in joints
-            .iter()
-            .zip(impulses.as_chunks::<3>().0)
-            .zip(ties)
-            .enumerate()
+        for (k, ((joint, impulses), ties)) in
+            joints.iter().zip(impulses.as_chunks::<3>().0).zip(ties).enumerate()
         {
             let pushes = joint.count > 0 && impulses[joint.count - 1] > 0.0;
-            let bent = if pushes && clamped {
-                Matrix3::zeros()
-            } else {
-                joint.turning(impulses) * -a
-            };
+            let bent =
+                if pushes && clamped { Matrix3::zeros() } else { joint.turning(impulses) * -a };
             let mut softness = 0.0;
             for ((i, sign), place) in joint.parts().zip(&ties[1..]) {
                 if !is_free(i) {
@@ -120,9 +105,7 @@ impl Saddle {
 
     /// Solves with the factor: writes the changes of velocities, n x 3, and of impulses.
     pub fn solve(&mut self, [r, c]: [&[f64]; 2], dv: &mut [f64], dl: &mut [f64]) {
-        let Self {
-            pattern, factor, ..
-        } = self;
+        let Self { pattern, factor, .. } = self;
         let n = r.len() / 3;
         for i in 0..n {
             *factor.unknowns_mut(pattern, i) = [r[i], r[n + i], r[2 * n + i], 0.0];
@@ -221,9 +204,7 @@ impl Direct {
 
     /// Solves A x = b with the factor.
     pub fn solve(&mut self, b: &[f64], x: &mut [f64]) {
-        let Self {
-            pattern, factor, ..
-        } = self;
+        let Self { pattern, factor, .. } = self;
         let n = pattern.len();
         for i in 0..n {
             *factor.unknowns_mut(pattern, i) = [b[i], b[n + i], b[2 * n + i], 0.0];

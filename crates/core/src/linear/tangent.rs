@@ -55,10 +55,7 @@ impl Tangent {
     /// Does what [`new`](Self::new) does, for the matrix A = M + a C, with a D if drifts do not
     /// solve drag.
     pub fn of_damping(system: &dyn Linearized) -> Self {
-        let mut tangent = Self {
-            only_damping: true,
-            ..Self::empty(system)
-        };
+        let mut tangent = Self { only_damping: true, ..Self::empty(system) };
         // The pattern of a fluid changes.
         if system.hints().pattern_is_fixed() && system.lists_all_couplings() {
             tangent.list(system);
@@ -106,13 +103,7 @@ impl Tangent {
         (left, skips): (usize, bool),
         visit: impl FnOnce(f64, &[f64], bool, &mut dyn FnMut(Coupling)),
     ) {
-        let Self {
-            axial,
-            blocks,
-            rank_one,
-            free,
-            ..
-        } = self;
+        let Self { axial, blocks, rank_one, free, .. } = self;
         // Walls of a fluid have many couplings of two pinned particles, which act on nothing.
         let idle = |c: &AxialCoupling| skips && free[c.i] + free[c.j] == 0.0;
         let counts = [axial.len(), blocks.len(), rank_one.len()];
@@ -167,9 +158,7 @@ impl Tangent {
         let axial = self.axial.iter().map(|c| [c.i as u32, c.j as u32]);
         let blocks = self.blocks.iter().map(|c| [c.i as u32, c.j as u32]);
         let of_four = |c: &RankOneCoupling| TWO_OF_FOUR.map(|two| two.map(|k| c.ends[k] as u32));
-        axial
-            .chain(blocks)
-            .chain(self.rank_one.iter().flat_map(of_four))
+        axial.chain(blocks).chain(self.rank_one.iter().flat_map(of_four))
     }
 
     /// Assembles the couplings at time t (s) at x for steps of length a (s). With `clamped`, A is
@@ -185,18 +174,10 @@ impl Tangent {
         self.x.copy_from_slice(x);
         self.version += 1;
         let drifts = self.only_damping && system.splitting().is_some();
-        let drag = if drifts {
-            0.0
-        } else {
-            a * system.drag_coefficient()
-        };
+        let drag = if drifts { 0.0 } else { a * system.drag_coefficient() };
         let particles = self.masses.iter_mut().zip(&mut self.free);
         for ((m, free), w) in particles.zip(system.inverse_masses()) {
-            (*m, *free) = if *w == 0.0 {
-                (0.0, 0.0)
-            } else {
-                (1.0 / w + drag, 1.0)
-            };
+            (*m, *free) = if *w == 0.0 { (0.0, 0.0) } else { (1.0 / w + drag, 1.0) };
         }
         self.add_up_diagonal(system);
     }
@@ -209,13 +190,10 @@ impl Tangent {
         for column in sums.chunks_exact_mut(n).take(3) {
             column.copy_from_slice(&self.masses);
         }
-        let mut diagonal = Diagonal {
-            columns: columns_mut(&mut sums),
-        };
+        let mut diagonal = Diagonal { columns: columns_mut(&mut sums) };
         let products = system.products();
-        let fast = products.map_or(0, |products| {
-            products.add_diagonal(&self.matrix(), &mut diagonal)
-        });
+        let fast =
+            products.map_or(0, |products| products.add_diagonal(&self.matrix(), &mut diagonal));
         self.listed = false;
         if fast == self.fast && fast <= self.axial.len() {
             let skips = self.only_damping;
@@ -270,11 +248,7 @@ impl Tangent {
 
     /// Returns the factor of K in A: a2 (s2), or 0.
     fn stiffness_factor(&self) -> f64 {
-        if self.only_damping {
-            0.0
-        } else {
-            self.a * self.a
-        }
+        if self.only_damping { 0.0 } else { self.a * self.a }
     }
 
     /// Returns whether A is without K.
@@ -360,9 +334,7 @@ impl Tangent {
     pub fn stiffness(&self) -> f64 {
         let sums = &self.diagonal[6 * self.particles()..];
         let ratios = sums.iter().zip(&self.masses);
-        ratios
-            .filter(|(_, m)| **m > 0.0)
-            .fold(0.0, |most: f64, (sum, m)| most.max(2.0 * sum / m))
+        ratios.filter(|(_, m)| **m > 0.0).fold(0.0, |most: f64, (sum, m)| most.max(2.0 * sum / m))
     }
 
     /// Writes A p to `out`, for a p that is zero on pinned particles; so is `out`.
@@ -403,12 +375,7 @@ impl Tangent {
         out: &mut [f64],
     ) {
         let mut product = std::mem::take(&mut self.scratch);
-        let matrix = Matrix {
-            stiffness: 1.0,
-            damping: 0.0,
-            masses: &self.zeros,
-            ..self.matrix()
-        };
+        let matrix = Matrix { stiffness: 1.0, damping: 0.0, masses: &self.zeros, ..self.matrix() };
         let products = system.products();
         let done = products.map_or(0, |products| products.multiply(&matrix, d, &mut product));
         if done > 0 {
@@ -551,14 +518,7 @@ pub(super) fn inverse([xx, yy, zz, xy, xz, yz]: Block) -> Block {
     let determinant = xx * a + xy * b + xz * c;
     if xx > 0.0 && minor > 0.0 && determinant > 0.0 {
         let d = 1.0 / determinant;
-        [
-            a * d,
-            (xx * zz - xz * xz) * d,
-            minor * d,
-            b * d,
-            c * d,
-            (xy * xz - xx * yz) * d,
-        ]
+        [a * d, (xx * zz - xz * xz) * d, minor * d, b * d, c * d, (xy * xz - xx * yz) * d]
     } else {
         let size = |k: f64| 1.0 / k.abs().max(f64::MIN_POSITIVE);
         [size(xx), size(yy), size(zz), 0.0, 0.0, 0.0]

@@ -59,14 +59,7 @@ pub(super) fn jelly(side: usize, stiffness: f64) -> (Network, Vec<f64>) {
     let spacing = 1.0 / (side - 1) as f64;
     let place = |i: usize| [i % side, i / side % side, i / side / side];
     for i in 0..n {
-        for (dx, dy, dz) in [
-            (1, 0, 0),
-            (0, 1, 0),
-            (0, 0, 1),
-            (1, 1, 0),
-            (0, 1, 1),
-            (1, 0, 1),
-        ] {
+        for (dx, dy, dz) in [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0, 1, 1), (1, 0, 1)] {
             let j = i + dx + side * (dy + side * dz);
             let [p, d] = [place(i), [dx, dy, dz]];
             if (0..3).all(|axis| p[axis] + d[axis] < side) {
@@ -163,11 +156,7 @@ fn compressed_cloth_needs_the_clamp() {
         for direct in [false, true] {
             solver.direct_always = Some(direct);
             let (_, solved) = solver.solve(&network, &b, &mut dv, 1e-8);
-            assert_eq!(
-                solved.is_some(),
-                clamped,
-                "direct: {direct}, clamped: {clamped}"
-            );
+            assert_eq!(solved.is_some(), clamped, "direct: {direct}, clamped: {clamped}");
         }
     }
 }
@@ -224,10 +213,8 @@ fn solves_measured() {
                 let [alone, with] = solver.prices(tolerance);
                 let mut iterations = 0;
                 let time = time(|| {
-                    iterations = solver
-                        .solve(&network, black_box(&b), &mut dv, tolerance)
-                        .0
-                        .iterations;
+                    iterations =
+                        solver.solve(&network, black_box(&b), &mut dv, tolerance).0.iterations;
                 });
                 let once = if multigrid { MULTIGRID[1] } else { 0.0 };
                 let each = (time / force - once) / iterations as f64;
@@ -251,11 +238,7 @@ fn solves_measured() {
             let solve = time(|| direct.solve(black_box(&b), &mut dv));
             solver.direct_always = None;
             solver.factorised = false;
-            let picked = solver
-                .solve(&network, &b, &mut dv, tolerance)
-                .0
-                .factorizations
-                == 1;
+            let picked = solver.solve(&network, &b, &mut dv, tolerance).0.factorizations == 1;
             println!(
                 "{name:<18} {a_w:>8} {:>8.2} {:>9.2} | {} | {} | {:>9.1} {:>8.2} {:>13.1} {:>14.1}  {}  {:.2}",
                 1e6 * force,
@@ -267,11 +250,7 @@ fn solves_measured() {
                 prices.0,
                 prices.1,
                 if picked { "direct" } else { "cg    " },
-                if picked {
-                    (factor + solve) / pcg
-                } else {
-                    pcg / (factor + solve)
-                },
+                if picked { (factor + solve) / pcg } else { pcg / (factor + solve) },
             );
         }
     }
@@ -283,20 +262,10 @@ const FORCING: f64 = 1e-5;
 /// with the blocks of each two, it has the blocks on the diagonal, and the stiffness is a bound.
 #[test]
 fn a_coupling_of_four_particles_is_those_of_each_two() {
-    let skin = Skin {
-        thickness: 0.1,
-        stiffness: 50.0,
-        damping: 0.5,
-        ..Skin::default()
-    };
+    let skin = Skin { thickness: 0.1, stiffness: 50.0, damping: 0.5, ..Skin::default() };
     let mut network = Network::new(vec![0.1, 0.2, 0.3, 0.4]).unwrap();
     network.set_triangles([[1, 2, 3]]).unwrap();
-    let touch = Touch {
-        skins: vec![skin; 4],
-        edges: vec![[0, 0]],
-        drops: vec![],
-        bodies: true,
-    };
+    let touch = Touch { skins: vec![skin; 4], edges: vec![[0, 0]], drops: vec![], bodies: true };
     network.set_touch(Some(touch)).unwrap();
     let x = [0.3, 0.0, 1.0, 0.0, 0.05, 0.0, 0.0, 0.02, 0.2, 0.0, 0.1, 1.0];
     let mut tangent = Tangent::new(&network);
@@ -311,12 +280,7 @@ fn a_coupling_of_four_particles_is_those_of_each_two() {
         let by_mass: f64 = expected.iter().zip(p).map(|(a, p)| a * p).sum();
         tangent.blocks(|i, j, stiffness| {
             let damping = [0.0; 9];
-            let coupling = GeneralCoupling {
-                i,
-                j,
-                stiffness,
-                damping,
-            };
+            let coupling = GeneralCoupling { i, j, stiffness, damping };
             add_block(&coupling, stiffness, &p, &mut expected);
         });
         for (a, b) in product.iter().zip(expected) {

@@ -17,12 +17,7 @@ pub(crate) fn attract(
     if inertia > 0.0 {
         network.particles.burden(particle, inertia * mass);
     }
-    let attraction = Attraction {
-        particle,
-        mass: (1.0 + inertia) * mass,
-        path,
-        frequency,
-    };
+    let attraction = Attraction { particle, mass: (1.0 + inertia) * mass, path, frequency };
     network.elements.replace_all(Some(attraction));
 }
 

@@ -37,10 +37,7 @@ pub(super) struct Bodies {
 impl Bodies {
     /// Creates an empty list of bodies, among n particles.
     pub fn new(n: usize) -> Self {
-        Self {
-            particles: n,
-            ..Self::default()
-        }
+        Self { particles: n, ..Self::default() }
     }
 
     /// Checks that a body can be added: its particles exist, belong to no other body and are free,
@@ -56,9 +53,7 @@ impl Bodies {
             particles.check(body.points().end - 1)?;
         }
         for i in body.points() {
-            let in_sheet = elements
-                .sheets()
-                .any(|sheet| sheet.particles().contains(&i));
+            let in_sheet = elements.sheets().any(|sheet| sheet.particles().contains(&i));
             if i == body.center() || self.body_of(i).is_some() || in_sheet {
                 return Err(Error::Invalid(format!(
                     "particle {i} cannot be a point of a body: it is a centre, in a sheet, or a \
@@ -119,10 +114,7 @@ impl Bodies {
         for motor in &self.motors {
             let second = motor.second.map(driven);
             let [force, own, other] = motor.load(&driven(motor.first), second.as_ref());
-            let sides = [
-                (Some(motor.first), force, own),
-                (motor.second, -force, other),
-            ];
+            let sides = [(Some(motor.first), force, own), (motor.second, -force, other)];
             for (body, force, torque) in sides {
                 let Some(k) = body else { continue };
                 for axis in 0..3 {
@@ -142,14 +134,7 @@ impl Bodies {
         let stream = airflow.wind.stream(t);
         for (k, body, _, moving) in self.each(y) {
             let [place, velocity] = [y, &y[3 * n..]].map(|of| row(of, n, body.center()));
-            let pass = Pass {
-                airflow,
-                stream: stream.as_ref(),
-                t,
-                place,
-                velocity,
-                moving,
-            };
+            let pass = Pass { airflow, stream: stream.as_ref(), t, place, velocity, moving };
             let [force, torque] = pass.over(&faces[k], body.radius());
             for axis in 0..3 {
                 f[axis * n + body.center()] += force[axis];
@@ -288,10 +273,7 @@ impl Pass<'_> {
         let own = self.velocity + self.moving.spin.cross(&arm);
         let mut force = Vector3::zeros();
         if wind != 0.0 {
-            let blown = self
-                .airflow
-                .wind
-                .in_stream(self.stream, self.t, (self.place + arm).into());
+            let blown = self.airflow.wind.in_stream(self.stream, self.t, (self.place + arm).into());
             force += self.airflow.on_closed(blown - own, area) * wind;
         }
         if still != 0.0 {

@@ -203,9 +203,7 @@ impl Network {
     pub fn mend(&mut self, whole: &Self, torn: &[[usize; 2]]) -> Result<(), Error> {
         self.tears.copy_torn(&whole.tears);
         self.copy_springs(whole)?;
-        self.surfaces
-            .triangles
-            .clone_from(&whole.surfaces.triangles);
+        self.surfaces.triangles.clone_from(&whole.surfaces.triangles);
         self.renew_contact();
         let more = torn.iter().filter(|[i, j]| !whole.is_torn(*i, *j));
         self.break_springs(&more.copied().collect::<Vec<_>>())

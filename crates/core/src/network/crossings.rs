@@ -26,11 +26,7 @@ pub(super) fn check_apart(network: &Network, t: f64, x: &[f64]) -> Result<(), Er
     if crossed.is_empty() {
         return check_single(network, t, x);
     }
-    let description = Description {
-        network,
-        x,
-        crossed: &crossed,
-    };
+    let description = Description { network, x, crossed: &crossed };
     Err(Error::Invalid(description.to_string()))
 }
 
@@ -52,9 +48,7 @@ fn check_single(network: &Network, t: f64, x: &[f64]) -> Result<(), Error> {
         };
         if let Some(k) = network.obstacles().iter().position(is_in) {
             let name = name(network, Vertex::Obstacle(k));
-            return Err(Error::Invalid(format!(
-                "particle {i} is in {name} or on it"
-            )));
+            return Err(Error::Invalid(format!("particle {i} is in {name} or on it")));
         }
     }
     Ok(())
@@ -115,10 +109,7 @@ pub fn untangle(network: &Network, y: &mut [f64]) -> Result<(), Error> {
         let weight = if stays { 0.0 } else { weights[body.center()] };
         all().for_each(|i| weights[i] = weight);
     }
-    let freedom = Freedom {
-        links: &links,
-        weights: &weights,
-    };
+    let freedom = Freedom { links: &links, weights: &weights };
     if contact::untangle(layer, &freedom, 0.0, x) {
         return Ok(());
     }
@@ -169,10 +160,7 @@ impl Parts {
     fn of(network: &Network) -> Self {
         let mut sets = Sets::new(network.particles());
         let edges = network.touch().into_iter().flat_map(|touch| &touch.edges);
-        let sides = network
-            .triangles()
-            .iter()
-            .flat_map(|&[a, b, c]| [[a, b], [b, c]]);
+        let sides = network.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c]]);
         let mut members = vec![];
         for [a, b] in sides.chain(edges.copied()) {
             sets.join(a, b);
@@ -249,9 +237,7 @@ impl fmt::Display for Description<'_> {
         };
         let name = |vertex: Vertex| name(self.network, vertex);
         f.write_str(&first.told(&name))?;
-        let place = self
-            .place(&first.first)
-            .or_else(|| self.place(&first.second));
+        let place = self.place(&first.first).or_else(|| self.place(&first.second));
         if let Some([x, y, z]) = place {
             if x.abs().max(y.abs()).max(z.abs()) < 0.1 {
                 write!(f, " near ({x:.2e}, {y:.2e}, {z:.2e})")?;
@@ -279,11 +265,7 @@ impl fmt::Display for Description<'_> {
         for (k, ((a, b), times)) in pairs.iter().take(MAX_NAMED).enumerate() {
             let before = if k == 0 { "," } else { ";" };
             let a_name = parts.name(*a, &mut told, &name);
-            let b_name = if a == b {
-                "itself".into()
-            } else {
-                parts.name(*b, &mut told, &name)
-            };
+            let b_name = if a == b { "itself".into() } else { parts.name(*b, &mut told, &name) };
             write!(f, "{before} {a_name} crosses {b_name} ({times}x)")?;
         }
         match pairs.len() - MAX_NAMED.min(pairs.len()) {

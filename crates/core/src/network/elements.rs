@@ -38,11 +38,7 @@ pub(super) struct Elements {
 impl Elements {
     /// Creates an empty list of elements, for n particles.
     pub fn new(n: usize) -> Self {
-        Self {
-            all: vec![],
-            particles: n,
-            single: std::iter::once(0..n).collect(),
-        }
+        Self { all: vec![], particles: n, single: std::iter::once(0..n).collect() }
     }
 
     /// Returns the number of particles.
@@ -85,10 +81,7 @@ impl Elements {
         sheets.sort_by_key(|particles| particles.start);
         let ends = sheets.iter().map(|particles| particles.end);
         let starts = sheets.iter().map(|particles| particles.start);
-        let (from, to) = (
-            std::iter::once(0).chain(ends),
-            starts.chain([self.particles]),
-        );
+        let (from, to) = (std::iter::once(0).chain(ends), starts.chain([self.particles]));
         let between = from.zip(to).map(|(from, to)| from..to);
         self.single = between.filter(|particles| !particles.is_empty()).collect();
     }
@@ -291,21 +284,13 @@ impl Elements {
     /// evaluation by the elements' own kernels; 1 without couplings.
     pub fn speed(&self) -> f64 {
         let couplings = self.sum_of(|force| force.cost().couplings);
-        if couplings > 0.0 {
-            couplings / self.sum_of(|force| force.cost().price)
-        } else {
-            1.0
-        }
+        if couplings > 0.0 { couplings / self.sum_of(|force| force.cost().price) } else { 1.0 }
     }
 
     /// Returns the price of the assembly of the couplings, in evaluations of the forces.
     pub fn assembly(&self) -> f64 {
         let price = self.sum_of(|force| force.cost().price);
-        if price > 0.0 {
-            self.sum_of(|force| force.assembly()) / price
-        } else {
-            ASSEMBLY
-        }
+        if price > 0.0 { self.sum_of(|force| force.assembly()) / price } else { ASSEMBLY }
     }
 
     /// Returns the price of an iteration with the damping alone, in evaluations of the forces.
@@ -414,10 +399,7 @@ elements! {
 impl Element {
     /// Returns whether the force is elastic: springs or a solid.
     pub(crate) fn is_elastic(&self) -> bool {
-        matches!(
-            self.force().matter(),
-            Some(Matter::Springs | Matter::Elastic)
-        )
+        matches!(self.force().matter(), Some(Matter::Springs | Matter::Elastic))
     }
 
     /// Returns whether the element couples no particles.
@@ -454,8 +436,7 @@ pub(super) fn multiply(elements: &Elements, matrix: &Matrix, p: &[f64], out: &mu
 /// Adds the blocks of these springs to the diagonal of the matrix. Returns their number.
 pub(super) fn add_diagonal(elements: &Elements, matrix: &Matrix, diagonal: &mut Diagonal) -> usize {
     let all = elements.all().iter();
-    all.map(|element| element.force().add_diagonal(matrix, diagonal))
-        .sum()
+    all.map(|element| element.force().add_diagonal(matrix, diagonal)).sum()
 }
 
 /// Visits all other couplings.

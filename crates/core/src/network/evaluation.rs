@@ -22,13 +22,7 @@ use crate::rows::{Patch, Registers, Rows, Stage, SweepScratch, Terms};
 
 /// Returns the arguments of the elements of a network.
 pub(super) fn at<'a>(network: &'a Network, t: f64, x: &'a [f64], v: &'a [f64]) -> At<'a> {
-    At {
-        t,
-        x,
-        v,
-        masses: network.particles.masses(),
-        triangles: &network.surfaces.triangles,
-    }
+    At { t, x, v, masses: network.particles.masses(), triangles: &network.surfaces.triangles }
 }
 
 /// Writes all forces except those of constraints to f.
@@ -46,11 +40,7 @@ pub(super) fn is_split(network: &Network, terms: Terms) -> bool {
 
 /// Returns gravity and drag where drifts apply them; otherwise nothing.
 pub(super) fn drift_forces(network: &Network, terms: Terms) -> DriftForces {
-    if is_split(network, terms) {
-        network.elements.drift_forces()
-    } else {
-        DriftForces::default()
-    }
+    if is_split(network, terms) { network.elements.drift_forces() } else { DriftForces::default() }
 }
 
 /// Returns gravity and drag where no drift applies them, to be added last; otherwise nothing.
@@ -177,10 +167,7 @@ impl Rows for Network {
             inverse_masses: Some(self.particles.inverse_masses()),
             ..finish(self, stage.terms)
         };
-        let flow = self
-            .particles
-            .uniform_inverse_mass()
-            .filter(|_| stage.drift != 0.0);
+        let flow = self.particles.uniform_inverse_mass().filter(|_| stage.drift != 0.0);
         let flow = flow.map(|w| {
             let DriftForces { drag, gravity } = drift_forces(self, stage.terms);
             Flow::new(drag, gravity, w, stage.drift)
@@ -197,18 +184,8 @@ impl Rows for Network {
                     .by_particle()
                     .for_each(|force| force.add(stage.t, [x, y, z], &mut addends));
             }
-            Advance {
-                sheet,
-                added,
-                finish: &finish,
-                flow,
-                number,
-                stage,
-                row,
-                registers,
-                scratch,
-            }
-            .run();
+            Advance { sheet, added, finish: &finish, flow, number, stage, row, registers, scratch }
+                .run();
             if stage.drift == 0.0 || flow.is_some() {
                 place_row(self, stage.until, place.row(row), row, registers);
             } else {
@@ -280,10 +257,7 @@ pub(super) fn turning(
         acceleration: moving.angular_acceleration(&body.inertia(), wrench.torque),
         inverse_inertia: body.inertia().map(|moment| 1.0 / moment),
     };
-    (
-        turning,
-        wrench.force * network.particles.inverse_masses()[body.center()],
-    )
+    (turning, wrench.force * network.particles.inverse_masses()[body.center()])
 }
 
 /// Returns the rate (1/s) at which drag damps the motion of a body.
@@ -332,11 +306,8 @@ pub(crate) fn energy_of_errors(network: &Network, t: f64, y: &[f64], error: f64)
     }
     let elastic = energy_of(network, t, &off).elastic - energy_of(network, t, y).elastic;
     let mass = network.masses().iter().sum::<f64>();
-    let rate = if network.is_constrained() {
-        network.constraints.baumgarte_frequency()
-    } else {
-        0.0
-    };
+    let rate =
+        if network.is_constrained() { network.constraints.baumgarte_frequency() } else { 0.0 };
     let correction = 0.5 * mass * (error * rate).powi(2);
     let all = elastic.max(0.0) + correction;
     if all.is_finite() { all } else { 0.0 }

@@ -70,9 +70,7 @@ pub(super) fn hold(
         return false;
     }
     let motion = |i: usize, f: &[f64]| free_motion(network, t, &bodies, i, f);
-    network
-        .constraints
-        .add_forces(motion, |k, f| bodies(k, f).0, [x, v], f, torques)
+    network.constraints.add_forces(motion, |k, f| bodies(k, f).0, [x, v], f, torques)
 }
 
 /// Returns the inverse mass (1/kg) of particle i, 0 if it is pinned, and its acceleration (m/s2)
@@ -159,11 +157,7 @@ pub(crate) fn project_velocities(network: &Network, y: &mut [f64]) {
 /// met and stay so. With `ends_hold`, as in an impact, ropes and ends of joints hold where they are
 /// passed, else where they are taut.
 pub(crate) fn project(network: &Network, y: &mut [f64], ends_hold: bool) {
-    let size = network
-        .halves(y)
-        .0
-        .iter()
-        .fold(0.0, |most: f64, x| most.max(x.abs()));
+    let size = network.halves(y).0.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     for _ in 0..MAX_ITERATIONS {
         let [moved, turned] = push(network, y, (Projected::Places, ends_hold), Metric::Masses);
         // Written so that NaN ends the iteration.
@@ -171,12 +165,7 @@ pub(crate) fn project(network: &Network, y: &mut [f64], ends_hold: bool) {
             break;
         }
     }
-    push(
-        network,
-        y,
-        (Projected::Velocities, ends_hold),
-        Metric::Masses,
-    );
+    push(network, y, (Projected::Velocities, ends_hold), Metric::Masses);
 }
 
 /// Returns a constraint that cannot be met near the state y at time t (s), or soon after, because
@@ -190,11 +179,7 @@ pub(crate) fn contradiction(network: &Network, t: f64, y: &[f64], radius: f64) -
         let mut y = y.to_vec();
         network.hold(t, &mut y);
         let left = approach(network, &mut y, radius)?;
-        shake(
-            network,
-            JITTER * network.constraints.shortest(radius),
-            &mut y,
-        );
+        shake(network, JITTER * network.constraints.shortest(radius), &mut y);
         approach(network, &mut y, radius).map(|_| left)
     })
 }
@@ -249,11 +234,7 @@ fn push(
     let none = (vec![0.0; 3 * n], vec![0.0; 3 * network.bodies().len()]);
     let before = y.to_vec();
     let state: [&[f64]; 2] = network.halves(&before).into();
-    let loads = Loads {
-        x: state[0],
-        f: &none.0,
-        torques: &none.1,
-    };
+    let loads = Loads { x: state[0], f: &none.0, torques: &none.1 };
     let (masses, inverse_masses) = (network.masses(), network.particles.inverse_masses());
     let scale = |mass: f64| match metric {
         Metric::Masses => 1.0,
@@ -271,18 +252,11 @@ fn push(
     };
     let (mut largest, mut changes) = ([0.0_f64; 2], vec![]);
     let kind = (what, ends_hold);
-    nearest(
-        &network.constraints,
-        weight,
-        turning,
-        state,
-        kind,
-        &mut |moved, change| {
-            let kind = usize::from(matches!(moved, Moved::Body(_)));
-            largest[kind] = largest[kind].max(change.norm());
-            changes.push((moved, change));
-        },
-    );
+    nearest(&network.constraints, weight, turning, state, kind, &mut |moved, change| {
+        let kind = usize::from(matches!(moved, Moved::Body(_)));
+        largest[kind] = largest[kind].max(change.norm());
+        changes.push((moved, change));
+    });
     let radii = network.bodies().iter().map(rigid::Body::radius);
     let longest = largest[0].max(largest[1] * radii.fold(0.0, f64::max));
     let shortened = (most / longest).min(1.0);

@@ -40,12 +40,7 @@ pub(crate) struct Least {
 
 impl Least {
     /// Conditions at the start of a run: every rope that is at its length rebounds.
-    pub const AT_START: Self = Self {
-        none: 0.0,
-        height: 0.0,
-        time: 0.0,
-        rebounds: true,
-    };
+    pub const AT_START: Self = Self { none: 0.0, height: 0.0, time: 0.0, rebounds: true };
 }
 
 /// Largest change of a velocity, over the fastest one, that is left to the feedback of the
@@ -83,9 +78,8 @@ pub(crate) fn fit(network: &mut Network, t: f64, y: &mut [f64], least: Least) ->
 /// Makes the taut ropes slack, and leaves the ends of joints, that part at such a rate (m/s) in the
 /// state y.
 fn loosen_where(network: &mut Network, y: &[f64], is_loose: impl Fn(f64) -> bool) {
-    let rates = constraints::rates(&network.constraints, halves(network, y), &|k| {
-        turned(network, k, y)
-    });
+    let rates =
+        constraints::rates(&network.constraints, halves(network, y), &|k| turned(network, k, y));
     for (number, _) in rates.into_iter().filter(|(_, rate)| is_loose(*rate)) {
         constraints::set_taut(&mut network.constraints, number, false);
     }
@@ -164,9 +158,7 @@ pub(crate) fn pulls(network: &Network, y: &[f64]) -> Vec<Vec<Pushed>> {
     }
     let mut all = network.constraints.clone();
     constraints::hold_at_ends(&mut all, halves(network, y), &|k| turned(network, k, y));
-    solving(network, y, |weight, turning, state| {
-        constraints::pulls(&all, weight, turning, state)
-    })
+    solving(network, y, |weight, turning, state| constraints::pulls(&all, weight, turning, state))
 }
 
 /// Returns whether constraints hold a particle, or the body whose centre it is.
@@ -186,10 +178,7 @@ fn strike(
     let mut all = std::mem::take(&mut network.constraints);
     let pushed = pushed(network, &mut all, y, struck);
     network.constraints = all;
-    let mut jump = Jump {
-        tightened: !struck.is_empty(),
-        ..Jump::default()
-    };
+    let mut jump = Jump { tightened: !struck.is_empty(), ..Jump::default() };
     for pushed in &pushed {
         jump.change = jump.change.max(match pushed.moved {
             Moved::Body(k) => pushed.change.norm() * network.bodies()[k].radius(),
@@ -238,11 +227,8 @@ fn solving<R>(
 ) -> R {
     let (x, v) = network.halves(y);
     let weight = |i: usize| network.particles.inverse_masses()[i];
-    let loads = Loads {
-        x,
-        f: &vec![0.0; x.len()],
-        torques: &vec![0.0; 3 * network.bodies().len()],
-    };
+    let loads =
+        Loads { x, f: &vec![0.0; x.len()], torques: &vec![0.0; 3 * network.bodies().len()] };
     let turning = |k: usize| evaluation::turning(network, k, y, Terms::KickForces, loads).0;
     solve(&weight, &turning, [x, v])
 }
@@ -260,10 +246,7 @@ pub(crate) fn add(network: &Network, pushed: &[Pushed], y: &mut [f64]) {
             }
             Moved::Body(k) => {
                 let numbers = network.bodies.numbers(k);
-                for (y, push) in y[numbers.end - 3..numbers.end]
-                    .iter_mut()
-                    .zip(&pushed.impulse)
-                {
+                for (y, push) in y[numbers.end - 3..numbers.end].iter_mut().zip(&pushed.impulse) {
                     *y += push;
                 }
             }
@@ -322,9 +305,9 @@ pub(crate) fn slack(network: &Network) -> impl Iterator<Item = ([usize; 2], f64)
 /// Returns the other end and the length (m) of each rope attached to particle i.
 pub(crate) fn ropes_of(network: &Network, i: usize) -> impl Iterator<Item = (usize, f64)> {
     network.constraints().iter().filter_map(move |c| match *c {
-        Constraint::Rope {
-            i: a, j: b, length, ..
-        } if a == i || b == i => Some((a + b - i, length)),
+        Constraint::Rope { i: a, j: b, length, .. } if a == i || b == i => {
+            Some((a + b - i, length))
+        }
         _ => None,
     })
 }

@@ -102,14 +102,7 @@ impl Splitting for Network {
     /// Solves x' = v, v' = g - (c/m) v exactly; with constraints, v is constant.
     fn drift(&self, t: f64, h: f64, x: &mut [f64], v: &mut [f64]) {
         let all = 0..self.particles();
-        flow(
-            self,
-            Terms::KickForces,
-            h,
-            all,
-            columns_mut(x),
-            columns_mut(v),
-        );
+        flow(self, Terms::KickForces, h, all, columns_mut(x), columns_mut(v));
         place_pins(self, t + h, x, v);
     }
 }
@@ -143,8 +136,7 @@ impl Linearized for Network {
     }
 
     fn baumgarte_frequency(&self) -> Option<f64> {
-        self.is_constrained()
-            .then(|| self.constraints.baumgarte_frequency())
+        self.is_constrained().then(|| self.constraints.baumgarte_frequency())
     }
 
     /// Returns the constraints, unless surfaces touch, whose pairs of vertices change.

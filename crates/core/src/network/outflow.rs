@@ -9,23 +9,17 @@ use crate::system::Mechanics;
 
 /// Returns the boxes in which particles leave the fluid.
 pub(crate) fn outflows(network: &Network) -> &[Outflow] {
-    network
-        .fluid()
-        .map_or(&[], |fluid| fluid.members().outflows())
+    network.fluid().map_or(&[], |fluid| fluid.members().outflows())
 }
 
 /// Returns the particles that have left the fluid, in order.
 pub(crate) fn drained(network: &Network) -> &[u32] {
-    network
-        .fluid()
-        .map_or(&[], |fluid| fluid.members().drained())
+    network.fluid().map_or(&[], |fluid| fluid.members().drained())
 }
 
 /// Returns whether particle i has left the fluid.
 pub(super) fn is_drained(network: &Network, i: usize) -> bool {
-    network
-        .fluid()
-        .is_some_and(|fluid| fluid.members().has_left(i))
+    network.fluid().is_some_and(|fluid| fluid.members().has_left(i))
 }
 
 /// Lists the free particles of the fluid that are in an outflow in the state y, or less than
@@ -41,9 +35,7 @@ pub(crate) fn entered<'a>(
     let n = network.particles();
     let is_inside = move |i: usize| {
         let place = row(y, n, i);
-        outflows
-            .iter()
-            .any(|outflow| outflow.contains(&place, slack))
+        outflows.iter().any(|outflow| outflow.contains(&place, slack))
     };
     all.filter(move |i| network.inverse_masses()[*i as usize] > 0.0 && is_inside(*i as usize))
 }
@@ -82,14 +74,9 @@ pub(crate) fn go_back(network: &mut Network, y: &[f64], particles: &[u32]) -> bo
     set_drained(network, particles);
     let is_new = |i: &&u32| before.binary_search(i).is_err();
     for i in particles.iter().filter(is_new).map(|i| *i as usize) {
-        network
-            .particles
-            .pin(i, Path::Still(row(y, network.particles(), i)));
+        network.particles.pin(i, Path::Still(row(y, network.particles(), i)));
     }
-    for i in before
-        .iter()
-        .filter(|i| particles.binary_search(i).is_err())
-    {
+    for i in before.iter().filter(|i| particles.binary_search(i).is_err()) {
         network.particles.unpin(*i as usize);
     }
     before != particles

@@ -32,9 +32,7 @@ impl Particles {
     /// Creates free particles of these masses (kg).
     pub fn new(masses: Vec<f64>) -> Result<Self, Error> {
         if masses.is_empty() {
-            return Err(Error::Invalid(
-                "a network needs at least one particle".into(),
-            ));
+            return Err(Error::Invalid("a network needs at least one particle".into()));
         }
         for &m in &masses {
             positive("a particle's mass", m)?;
@@ -165,10 +163,7 @@ impl Particles {
     fn find_span(&mut self) {
         let first = self.pins.iter().filter_map(|pin| pin.until);
         let last = self.released.iter().filter_map(|pin| pin.until);
-        self.span = [
-            last.fold(ALWAYS[0], f64::max),
-            first.fold(ALWAYS[1], f64::min),
-        ];
+        self.span = [last.fold(ALWAYS[0], f64::max), first.fold(ALWAYS[1], f64::min)];
     }
 
     /// Finds these times again if a pin that lets go was removed.

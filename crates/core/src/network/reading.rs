@@ -168,8 +168,7 @@ impl Network {
     /// Writes the forces (N) of all springs to f, in the state (x, v).
     pub fn spring_forces(&self, x: &[f64], v: &[f64], f: &mut [f64]) {
         let springs = self.elements.elastic();
-        self.elements
-            .sum(springs, &at(self, 0.0, x, v), f, &Finish::default());
+        self.elements.sum(springs, &at(self, 0.0, x, v), f, &Finish::default());
     }
 
     /// Returns the strain at each particle at x (m), n x 3: the largest difference from 1 of the

@@ -83,13 +83,7 @@ pub(super) fn least_tension(network: &Network, t: f64, y: &[f64]) -> Option<(usi
         let torques = &*torques;
         let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, Loads { x, f, torques });
         let motion = |i: usize, f: &[f64]| free_motion(network, t, &bodies, i, f);
-        constraints::least_tension(
-            &network.constraints,
-            motion,
-            |k, f| bodies(k, f).0,
-            [x, v],
-            f,
-        )
+        constraints::least_tension(&network.constraints, motion, |k, f| bodies(k, f).0, [x, v], f)
     })
 }
 
@@ -123,19 +117,13 @@ impl Rigid for Network {
                 self.bodies.each(y).zip(tail.chunks_exact_mut(ROTATION))
             {
                 let wrench = wrench(self, k, &rotation, Terms::AllForces, loads);
-                let (c, w) = (
-                    body.center(),
-                    self.particles.inverse_masses()[body.center()],
-                );
+                let (c, w) = (body.center(), self.particles.inverse_masses()[body.center()]);
                 for axis in 0..3 {
                     if w > 0.0 {
                         dv[axis * n + c] = w * wrench.force[axis];
                     }
                 }
-                let rate = Rotation {
-                    q: moving.rate(rotation.q),
-                    momentum: wrench.torque,
-                };
+                let rate = Rotation { q: moving.rate(rotation.q), momentum: wrench.torque };
                 rate.write(tail);
                 let turning = moving.angular_acceleration(&body.inertia(), wrench.torque);
                 for (i, anchor) in body.anchors() {
@@ -214,11 +202,7 @@ impl Rigid for Network {
 
     fn measures(&self, visit: &mut dyn FnMut(Range<usize>, Measure)) {
         for axis in 0..6 {
-            let measure = if axis < 3 {
-                Measure::Position
-            } else {
-                Measure::Velocity
-            };
+            let measure = if axis < 3 { Measure::Position } else { Measure::Velocity };
             let mut start = axis * self.particles();
             for run in self.masses().chunk_by(|a, b| (*a > 0.0) == (*b > 0.0)) {
                 if run[0] > 0.0 {

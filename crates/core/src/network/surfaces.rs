@@ -159,20 +159,12 @@ impl Surfaces {
         (bodies, constraints): Jointed,
     ) -> ContactLayer {
         let obstacles = &self.obstacles;
-        let surface = Surface::new(
-            skins,
-            &self.triangles,
-            edges,
-            bodies,
-            obstacles,
-            touches_itself,
-        );
-        let joined = constraints
-            .iter()
-            .filter_map(|constraint| match constraint {
-                Constraint::Joint(joint) => joint.second.map(|second| [joint.first, second]),
-                _ => None,
-            });
+        let surface =
+            Surface::new(skins, &self.triangles, edges, bodies, obstacles, touches_itself);
+        let joined = constraints.iter().filter_map(|constraint| match constraint {
+            Constraint::Joint(joint) => joint.second.map(|second| [joint.first, second]),
+            _ => None,
+        });
         let surface = surface.with_joined(joined).with_drops(drops);
         ContactLayer::new(surface, obstacles.clone())
     }
@@ -264,10 +256,7 @@ impl Force for ContactLayer {
     }
 
     fn energy(&self, at: &At) -> Energy {
-        Energy {
-            contact: self.repulsion_energy(at.t, at.x, at.v),
-            ..Energy::default()
-        }
+        Energy { contact: self.repulsion_energy(at.t, at.x, at.v), ..Energy::default() }
     }
 
     fn reads_velocity(&self) -> bool {

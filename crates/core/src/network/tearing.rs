@@ -86,11 +86,7 @@ impl Tears {
     pub fn breaking(&self, elements: &Elements, x: &[f64], share: f64) -> Vec<[usize; 2]> {
         let is_too_long = |s: &Spring| self.is_too_long(x, s, share);
         let springs: Vec<Spring> = elements.all_springs().collect();
-        let mut torn: Vec<_> = springs
-            .iter()
-            .filter(|s| is_too_long(s))
-            .map(ends)
-            .collect();
+        let mut torn: Vec<_> = springs.iter().filter(|s| is_too_long(s)).map(ends).collect();
         torn.sort_unstable();
         let holds = |s: &&Spring| torn.binary_search(&ends(s)).is_err();
         let before = Neighbours::by(springs.iter());

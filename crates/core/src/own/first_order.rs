@@ -129,10 +129,7 @@ impl Ode {
         }
         entries.sort_unstable_by_key(|(row, column)| (*column, *row));
         entries.dedup();
-        Ok(Self {
-            sparsity: entries,
-            ..self
-        })
+        Ok(Self { sparsity: entries, ..self })
     }
 
     /// Makes the system M y' = f(t, y), with a constant matrix M: the row, the column and the value
@@ -191,10 +188,7 @@ impl Ode {
         if entries.len() == self.dim && (0..).zip(&entries).all(is_one) {
             entries.clear();
         }
-        Ok(Self {
-            mass: entries,
-            ..self
-        })
+        Ok(Self { mass: entries, ..self })
     }
 
     /// Sets the cost of an evaluation of f, in multiplications of two numbers within long rows:
@@ -205,10 +199,7 @@ impl Ode {
     /// The cost is not a finite number above 0.
     pub fn with_evaluation_cost(self, evaluation_cost: f64) -> Result<Self, Error> {
         positive("the cost of an evaluation", evaluation_cost)?;
-        Ok(Self {
-            evaluation_cost,
-            ..self
-        })
+        Ok(Self { evaluation_cost, ..self })
     }
 
     /// Sets the least size of each number to which errors are relative. By default, adaptive
@@ -243,10 +234,7 @@ impl Ode {
             return Err(Error::Invalid(why));
         }
         times.sort_unstable_by(f64::total_cmp);
-        Ok(Self {
-            jumps: times,
-            ..self
-        })
+        Ok(Self { jumps: times, ..self })
     }
 
     /// Sets `count` quantities by which states are compared in charts and choices, in place of
@@ -265,10 +253,7 @@ impl Ode {
             return Err(Error::Invalid(why.into()));
         }
         let write = move |t: f64, y: &[f64], out: &mut [f64]| quantities(t, y, out).outcome();
-        Ok(Self {
-            quantities: Some((count, Box::new(write))),
-            ..self
-        })
+        Ok(Self { quantities: Some((count, Box::new(write))), ..self })
     }
 
     /// Returns the system with the time reversed: its state at t is that of this one at -t. A
@@ -278,13 +263,7 @@ impl Ode {
         let jumps: Vec<f64> = self.jumps.iter().rev().map(|t| -t).collect();
         let own = self.jumps;
         // At a jump, f is that after it: a step that comes from there needs the one before.
-        let back = Arc::new(move |t: f64| {
-            if own.contains(&-t) {
-                (-t).next_down()
-            } else {
-                -t
-            }
-        });
+        let back = Arc::new(move |t: f64| if own.contains(&-t) { (-t).next_down() } else { -t });
         let reversed = |function: Box<Function>, sign: f64| -> Box<Function> {
             let back = back.clone();
             Box::new(move |t, y, out| {
@@ -312,9 +291,7 @@ impl Ode {
         Self {
             f: reversed(self.f, -1.0),
             jacobian,
-            quantities: self
-                .quantities
-                .map(|(count, write)| (count, reversed(write, 1.0))),
+            quantities: self.quantities.map(|(count, write)| (count, reversed(write, 1.0))),
             jumps,
             ..self
         }

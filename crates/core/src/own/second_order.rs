@@ -102,10 +102,7 @@ impl SecondOrder {
     /// fewer evaluations, and Nyström methods support the system.
     #[must_use]
     pub fn positional(self) -> Self {
-        Self {
-            reads_velocity: false,
-            ..self
-        }
+        Self { reads_velocity: false, ..self }
     }
 
     /// Adds the Jacobian: a function of t, x and v that writes dF/dx and dF/dv, each row by row, to
@@ -134,10 +131,7 @@ impl SecondOrder {
         let write = move |t: f64, x: &[f64], v: &[f64], out: &mut [f64]| {
             energy(t, x, v, &mut out[0]).outcome()
         };
-        Self {
-            energy: Some(Box::new(write)),
-            ..self
-        }
+        Self { energy: Some(Box::new(write)), ..self }
     }
 
     /// Returns the state y = [x | v] of positions (m) and velocities (m/s), as the functions see
@@ -179,8 +173,7 @@ impl Mechanics for SecondOrder {
         let (x, v) = (&x[..self.seen], &v[..self.seen]);
         let energy = self.energy.as_ref()?;
         let mut found = [0.0];
-        self.failure
-            .guard(&mut found, |found| energy(t, x, v, found));
+        self.failure.guard(&mut found, |found| energy(t, x, v, found));
         Some(found[0])
     }
 

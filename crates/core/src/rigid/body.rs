@@ -92,18 +92,9 @@ impl Body {
             }
         }
         if anchors.is_empty() {
-            return Err(Error::Invalid(
-                "a body needs a part that is not a floor".into(),
-            ));
+            return Err(Error::Invalid("a body needs a part that is not a floor".into()));
         }
-        Ok(Self {
-            center,
-            points: first..first + anchors.len(),
-            anchors,
-            inertia,
-            radius,
-            parts,
-        })
+        Ok(Self { center, points: first..first + anchors.len(), anchors, inertia, radius, parts })
     }
 
     /// Adds points to the body, as those that a liquid touches: the particles that follow the
@@ -191,11 +182,7 @@ impl Body {
             Vector3::new(a[self.center], a[n + self.center], a[2 * n + self.center])
         };
         Pose {
-            place: Place {
-                position: row(x),
-                velocity: row(v),
-                acceleration: Vector3::zeros(),
-            },
+            place: Place { position: row(x), velocity: row(v), acceleration: Vector3::zeros() },
             orientation: Some(Orientation { rotation, spin }),
         }
     }
@@ -254,9 +241,7 @@ impl Motor {
         let right = self.effort.is_finite()
             && self.first < bodies
             && self.second.is_none_or(|k| k < bodies && k != self.first)
-            && self
-                .speed
-                .is_none_or(|speed| speed.is_finite() && speed * self.effort > 0.0);
+            && self.speed.is_none_or(|speed| speed.is_finite() && speed * self.effort > 0.0);
         if right {
             return Ok(());
         }
@@ -279,9 +264,7 @@ impl Motor {
                 first.velocity - velocity - spin.cross(&arm)
             }
         };
-        let share = self
-            .speed
-            .map_or(1.0, |speed| 1.0 - axis.dot(&rate) / speed);
+        let share = self.speed.map_or(1.0, |speed| 1.0 - axis.dot(&rate) / speed);
         let effort = axis * (self.effort * share);
         match self.drive {
             Drive::Rotary => [still, effort, -effort],

@@ -119,9 +119,7 @@ impl Face {
     fn add_outside(&self, others: &[&Part], radius: f64, faces: &mut Vec<Self>) -> bool {
         let (middle, reach) = self.ball();
         let distance = |point: Vector3<f64>| {
-            let all = others
-                .iter()
-                .map(|other| other.shape.distance(point - other.at));
+            let all = others.iter().map(|other| other.shape.distance(point - other.at));
             all.fold(f64::INFINITY, f64::min)
         };
         let from_middle = distance(middle);
@@ -156,10 +154,7 @@ pub(crate) fn faces(parts: &[Part], radius: f64) -> Vec<Face> {
     let mut faces = vec![];
     for (k, part) in parts.iter().enumerate() {
         let all = parts.iter().enumerate();
-        let others: Vec<_> = all
-            .filter(|(other, _)| *other != k)
-            .map(|(_, part)| part)
-            .collect();
+        let others: Vec<_> = all.filter(|(other, _)| *other != k).map(|(_, part)| part).collect();
         let longest = LONGEST * extent(part);
         for face in of_part(part) {
             face.pieces(longest, &|_, _| true, &mut |piece| {
@@ -182,9 +177,9 @@ fn extent(part: &Part) -> f64 {
 fn of_part(part: &Part) -> Vec<Face> {
     match &part.shape {
         Shape::Sphere { radius } => round([part.at; 2], *radius).map(Face::Round).collect(),
-        Shape::Capsule { ends, radius } => round(ends.map(|end| part.at + end), *radius)
-            .map(Face::Round)
-            .collect(),
+        Shape::Capsule { ends, radius } => {
+            round(ends.map(|end| part.at + end), *radius).map(Face::Round).collect()
+        }
         Shape::Box { .. } | Shape::Mesh(_) | Shape::Floor => {
             let simplices = part.shape.simplices();
             let corner = |i: u32| part.at + simplices.points[i as usize];
@@ -218,10 +213,7 @@ mod tests {
     fn areas(faces: &[Face], along: Vector3<f64>) -> [f64; 2] {
         let nodes = nodes(faces);
         let sum = |size: &dyn Fn(&Vector3<f64>) -> f64| nodes.iter().map(|[_, a]| size(a)).sum();
-        [
-            sum(&|area| area.norm()),
-            sum(&|area| 0.5 * area.dot(&along).abs()),
-        ]
+        [sum(&|area| area.norm()), sum(&|area| 0.5 * area.dot(&along).abs())]
     }
 
     /// Returns the volume (m3) by the divergence theorem.
@@ -236,10 +228,7 @@ mod tests {
 
     #[test]
     fn round_parts_have_the_areas_of_their_formulas() {
-        let (r, ends) = (
-            0.3,
-            [Vector3::new(0.4, -0.1, 0.2), Vector3::new(-0.2, 0.7, 0.9)],
-        );
+        let (r, ends) = (0.3, [Vector3::new(0.4, -0.1, 0.2), Vector3::new(-0.2, 0.7, 0.9)]);
         let l = (ends[1] - ends[0]).norm();
         let axis = (ends[1] - ends[0]) / l;
         let [side, other] = normals(axis);
@@ -249,11 +238,7 @@ mod tests {
             (Shape::Sphere { radius: r }, 0.0, side),
             (Shape::Capsule { ends, radius: r }, l, axis),
             (Shape::Capsule { ends, radius: r }, l, side),
-            (
-                Shape::Capsule { ends, radius: r },
-                l,
-                (side + other * 0.4).normalize(),
-            ),
+            (Shape::Capsule { ends, radius: r }, l, (side + other * 0.4).normalize()),
         ] {
             let faces = of_part(&part(shape, Vector3::zeros()));
             let [whole, seen] = areas(&faces, along);

@@ -88,16 +88,11 @@ impl MassProperties {
     pub fn principal(&self) -> (Vector3<f64>, Matrix3<f64>) {
         let largest = self.inertia.diagonal().max();
         let products = [(0, 1), (0, 2), (1, 2)].map(|at| self.inertia[at].abs());
-        if products
-            .iter()
-            .all(|product| *product <= ALIGNED_SHARE * largest)
-        {
+        if products.iter().all(|product| *product <= ALIGNED_SHARE * largest) {
             return (self.inertia.diagonal(), Matrix3::identity());
         }
-        let SymmetricEigen {
-            eigenvectors: mut axes,
-            eigenvalues,
-        } = SymmetricEigen::new(self.inertia);
+        let SymmetricEigen { eigenvectors: mut axes, eigenvalues } =
+            SymmetricEigen::new(self.inertia);
         if axes.determinant() < 0.0 {
             axes.column_mut(2).neg_mut();
         }
@@ -130,11 +125,7 @@ fn capsule([a, b]: [Vector3<f64>; 2], r: f64) -> MassProperties {
     let across = rod * (r * r / 4.0 + length * length / 12.0)
         + ball * (0.4 * r * r + half * half + 0.75 * half * r);
     let along = rod * r * r / 2.0 + ball * 0.4 * r * r;
-    let axis = if length > 0.0 {
-        (b - a) / length
-    } else {
-        Vector3::y()
-    };
+    let axis = if length > 0.0 { (b - a) / length } else { Vector3::y() };
     let outer = axis * axis.transpose();
     MassProperties {
         mass: rod + ball,
@@ -237,10 +228,7 @@ impl Round {
         let [axis, side, other] = self.axes;
         let outwards = side * libm::cos(angle) + other * libm::sin(angle);
         if !self.is_ball {
-            return (
-                self.middle + axis * height + outwards * self.radius,
-                outwards,
-            );
+            return (self.middle + axis * height + outwards * self.radius, outwards);
         }
         let normal = axis * (height / self.radius) + outwards * (self.across(height) / self.radius);
         (self.middle + normal * self.radius, normal)
@@ -249,9 +237,7 @@ impl Round {
     /// Returns the distance from the axis at a height (m).
     fn across(&self, height: f64) -> f64 {
         if self.is_ball {
-            (self.radius * self.radius - height * height)
-                .max(0.0)
-                .sqrt()
+            (self.radius * self.radius - height * height).max(0.0).sqrt()
         } else {
             self.radius
         }
@@ -274,11 +260,7 @@ impl Round {
 /// Lists the faces of a capsule between the middles of its ends, or of a sphere.
 pub(super) fn round([first, last]: [Vector3<f64>; 2], radius: f64) -> impl Iterator<Item = Round> {
     let length = (last - first).norm();
-    let axis = if length > 0.0 {
-        (last - first) / length
-    } else {
-        Vector3::y()
-    };
+    let axis = if length > 0.0 { (last - first) / length } else { Vector3::y() };
     let [side, other] = normals(axis);
     let half = 0.5 * length;
     let pieces = [

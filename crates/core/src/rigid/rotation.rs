@@ -25,10 +25,7 @@ impl Rotation {
     /// Creates the rotation about a vector by its length (rad), at rest.
     #[must_use]
     pub fn about(vector: Vector3<f64>) -> Self {
-        Self {
-            q: turn(vector),
-            momentum: Vector3::zeros(),
-        }
+        Self { q: turn(vector), momentum: Vector3::zeros() }
     }
 
     /// Creates the rotation from the numbers of a state: w, x, y and z of q, then L.
@@ -37,10 +34,7 @@ impl Rotation {
         let [w, x, y, z, lx, ly, lz] = *numbers else {
             unreachable!("a rotation is seven numbers")
         };
-        Self {
-            q: Quaternion::new(w, x, y, z),
-            momentum: Vector3::new(lx, ly, lz),
-        }
+        Self { q: Quaternion::new(w, x, y, z), momentum: Vector3::new(lx, ly, lz) }
     }
 
     /// Writes the numbers of a state.

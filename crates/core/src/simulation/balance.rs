@@ -119,9 +119,7 @@ impl Balance {
             gravitational: Range::at(energy.gravitational),
             ..Self::default()
         };
-        balance
-            .kinetic
-            .add(energy.kinetic - adrift(network, network.halves(y).1));
+        balance.kinetic.add(energy.kinetic - adrift(network, network.halves(y).1));
         balance
     }
 
@@ -215,12 +213,7 @@ impl Balance {
 
     /// Widens the ranges of energy to those of another check.
     pub(super) fn widen(&mut self, other: &Self) {
-        let Self {
-            kinetic,
-            elastic,
-            gravitational,
-            ..
-        } = *other;
+        let Self { kinetic, elastic, gravitational, .. } = *other;
         (self.kinetic, self.elastic, self.gravitational) = (kinetic, elastic, gravitational);
     }
 
@@ -255,20 +248,13 @@ impl Balance {
         self.singular |= is_nearly_singular(network, t, x, v, f);
         (self.gain > MAX_GAIN * self.stake()).then(|| {
             let (particle, speed) = fastest_particle(v);
-            Cause::Gained {
-                energy: self.gain,
-                particle,
-                speed,
-            }
+            Cause::Gained { energy: self.gain, particle, speed }
         })
     }
 
     /// Returns the largest gain, if it is large enough for a warning.
     pub(super) fn notable_gain(&self) -> Option<Gain> {
-        let gain = Gain {
-            energy: self.most,
-            share: self.most / self.stake(),
-        };
+        let gain = Gain { energy: self.most, share: self.most / self.stake() };
         (gain.share > NOTABLE_GAIN).then_some(gain)
     }
 
@@ -283,11 +269,7 @@ impl Balance {
     pub(super) fn worst_constraint(&self, network: &Network) -> Option<Unmet> {
         let (number, share) = self.worst?;
         let constraint = network.constraints().get(number)?.name();
-        Some(Unmet {
-            number,
-            constraint,
-            share,
-        })
+        Some(Unmet { number, constraint, share })
     }
 
     /// Returns whether constraints were nearly singular at a check.
@@ -321,11 +303,7 @@ fn rounding(network: &Network, t: f64, y: &[f64]) -> f64 {
         let sign =
             |k: usize| f64::from((k as u32 + 1).wrapping_mul(0x9e37_79b9) >> (31 - number) & 1);
         let nudged = y.iter().enumerate().map(|(k, y)| {
-            let change = if k < n {
-                NUDGE * (2.0 * sign(k) - 1.0)
-            } else {
-                0.0
-            };
+            let change = if k < n { NUDGE * (2.0 * sign(k) - 1.0) } else { 0.0 };
             y * (1.0 + change)
         });
         (energy(&nudged.collect::<Vec<_>>()) - same).abs()
@@ -336,14 +314,7 @@ fn rounding(network: &Network, t: f64, y: &[f64]) -> f64 {
 /// Returns the particle with the largest of the velocities v, n x 3, and its speed (m/s).
 fn fastest_particle(v: &[f64]) -> (usize, f64) {
     let n = v.len() / 3;
-    let speed = |i: usize| {
-        (0..3)
-            .map(|axis| v[axis * n + i].powi(2))
-            .sum::<f64>()
-            .sqrt()
-    };
+    let speed = |i: usize| (0..3).map(|axis| v[axis * n + i].powi(2)).sum::<f64>().sqrt();
     let speeds = (0..n).map(|i| (i, speed(i)));
-    speeds
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-        .unwrap_or_default()
+    speeds.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default()
 }

@@ -29,9 +29,7 @@ impl Pipeline {
             return;
         }
         let least = self.least(state, rebounds);
-        self.jump(network, state, t, |network, y| {
-            tighten(network, t, y, least)
-        });
+        self.jump(network, state, t, |network, y| tighten(network, t, y, least));
     }
 
     /// Makes velocities fit, and accounts for the work, where the velocity of a pin that
@@ -41,9 +39,7 @@ impl Pipeline {
             && let Some(time) = jump_near(network, t, state.sliver())
         {
             let least = self.least(state, true);
-            self.jump(network, state, t, |network, y| {
-                fit(network, t.max(time), y, least)
-            });
+            self.jump(network, state, t, |network, y| fit(network, t.max(time), y, least));
             self.watch.forget_power();
         }
     }
@@ -141,11 +137,7 @@ impl Pipeline {
     /// and accounts for the change of energy. Before the run has arrived at that end, a state shown
     /// within the step still has these springs.
     fn tear(&mut self, model: &mut Model, state: &mut RunState) {
-        let share = if self.locator.serves(&self.stepper) {
-            NEGLIGIBLE_SHARE
-        } else {
-            0.0
-        };
+        let share = if self.locator.serves(&self.stepper) { NEGLIGIBLE_SHARE } else { 0.0 };
         if let Model::Network(network) = model
             && network.is_overstretched(network.halves(&state.y).0, share)
         {

@@ -141,10 +141,7 @@ impl Checkpoint {
     pub(super) fn check(&self, dim: usize) -> Result<(), Error> {
         let y = &self.run.y;
         if y.len() != dim {
-            return Err(Error::Dimension {
-                expected: dim,
-                found: y.len(),
-            });
+            return Err(Error::Dimension { expected: dim, found: y.len() });
         }
         let times = [self.run.since, self.run.end(), self.time()];
         let is_time = |t: &f64| t.is_finite() && *t >= 0.0;
@@ -176,9 +173,7 @@ impl Checkpoint {
     fn check_motion(&self, network: &Network, radius: f64) -> Result<(), Error> {
         let (n, y) = (network.particles(), &self.run.y);
         let wrong = |what: &str, i: usize| {
-            Error::Invalid(format!(
-                "no run can have {what} {i} as this checkpoint has it"
-            ))
+            Error::Invalid(format!("no run can have {what} {i} as this checkpoint has it"))
         };
         let (motion, rotations) = y.split_at(6 * n);
         let radius = radius.max(LEAST_RADIUS);

@@ -42,12 +42,7 @@ impl Depths {
         let relative = control.tolerance().unwrap_or(0.0);
         let absolute = limits.absolute.unwrap_or(relative * radius);
         let deepest = MAX_PENETRATION * radius;
-        Self {
-            none: NEGLIGIBLE_SHARE * radius,
-            shallow: absolute.min(deepest),
-            deepest,
-            radius,
-        }
+        Self { none: NEGLIGIBLE_SHARE * radius, shallow: absolute.min(deepest), deepest, radius }
     }
 
     /// Returns the way (m) in which friction stops a slide that counts as rest.

@@ -41,10 +41,7 @@ pub(super) fn touches_itself(network: &Network) -> bool {
 pub(super) fn let_touch(network: &mut Network, scene: &Scene, on: bool) -> Result<(), Error> {
     let own = scene.model.network().is_some_and(|n| n.touch().is_some());
     let touch = scene.touch.as_deref().filter(|_| on || own);
-    network.set_touch(touch.map(|touch| Touch {
-        bodies: on,
-        ..touch.clone()
-    }))
+    network.set_touch(touch.map(|touch| Touch { bodies: on, ..touch.clone() }))
 }
 
 /// Returns a network whose surfaces touch one another, themselves and obstacles from this state y

@@ -317,9 +317,7 @@ impl Driver {
         t = begin_of(model, t, state.sliver());
         let mut succeeds = true;
         while succeeds && t < time {
-            let Pipeline {
-                stepper, phases, ..
-            } = &mut self.pipeline;
+            let Pipeline { stepper, phases, .. } = &mut self.pipeline;
             let next = next_change(model, t, state.sliver());
             let y = &mut state.y;
             let end = next.min(time);
@@ -537,10 +535,7 @@ impl Within {
 
     /// Returns the step, if the time shown is within one.
     pub fn span(&self) -> Option<Span> {
-        self.times.map(|times| Span {
-            times,
-            ends: self.ends.clone(),
-        })
+        self.times.map(|times| Span { times, ends: self.ends.clone() })
     }
 
     /// Creates the step of saved progress, in a system of that dimension.
@@ -560,10 +555,7 @@ impl Within {
         }
         for end in ends.iter().filter(|end| !end.is_empty()) {
             if end.len() != dim {
-                return Err(Error::Dimension {
-                    expected: dim,
-                    found: end.len(),
-                });
+                return Err(Error::Dimension { expected: dim, found: end.len() });
             }
         }
         within.begin(&ends[0]);

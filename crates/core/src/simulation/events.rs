@@ -83,8 +83,7 @@ impl Events {
         self.list_pairs(step);
         self.leave_out_level(step);
         // What rests stays at the surface.
-        self.pairs
-            .retain(|pair| !Rest::is_listed(rests, pair.particle, pair.body));
+        self.pairs.retain(|pair| !Rest::is_listed(rests, pair.particle, pair.body));
         self.list_springs(step);
         if self.pairs.is_empty() && self.springs.is_empty() {
             return None;
@@ -109,13 +108,7 @@ impl Events {
 
     /// Finds the first event of a piece.
     fn first_in(&mut self, step: &Searched, piece: usize, state_at: StateAt) -> Option<Event> {
-        let Self {
-            pairs,
-            springs,
-            pieces,
-            state,
-            ..
-        } = self;
+        let Self { pairs, springs, pieces, state, .. } = self;
         let n = step.network.particles();
         let begin = piece as f64 / PIECES as f64;
         let (t, h) = (step.t + begin * step.h, step.h / PIECES as f64);
@@ -132,14 +125,11 @@ impl Events {
                 from = flight.unwrap_or(0.0);
             }
             if pair.touches {
-                let deepest = step
-                    .depths
-                    .deepest
-                    .min(match obstacle.shape.greatest_depth() {
-                        // It is unknown.
-                        0.0 => f64::INFINITY,
-                        depth => 0.25 * depth,
-                    });
+                let deepest = step.depths.deepest.min(match obstacle.shape.greatest_depth() {
+                    // It is unknown.
+                    0.0 => f64::INFINITY,
+                    depth => 0.25 * depth,
+                });
                 let sunk = approach.first(0.0, deepest);
                 if let Some(share) = sunk {
                     let share = begin + share / PIECES as f64;
@@ -153,18 +143,13 @@ impl Events {
                 let Some(share) = approach.first(from, 0.0) else {
                     break;
                 };
-                let kind = EventKind::Touch {
-                    particle: pair.particle,
-                    body: pair.body,
-                };
+                let kind = EventKind::Touch { particle: pair.particle, body: pair.body };
                 let guess = begin + share / PIECES as f64;
                 if first.is_some_and(|event| event.share <= guess) {
                     break;
                 }
-                if step.ends_shallow(
-                    [pair.particle, pair.body],
-                    &approach.separation(share).normal,
-                ) {
+                if step.ends_shallow([pair.particle, pair.body], &approach.separation(share).normal)
+                {
                     break;
                 }
                 match step.refine(guess, kind, state, state_at) {
@@ -179,23 +164,15 @@ impl Events {
                 }
             }
         }
-        for &Stretching {
-            ends,
-            longest,
-            is_rope,
-        } in springs.iter()
-        {
+        for &Stretching { ends, longest, is_rope } in springs.iter() {
             let [a, b] = ends.map(|i| course(pieces, i, h, n));
             let apart = Course {
                 x: [b.x[0] - a.x[0], b.x[1] - a.x[1]],
                 v: [b.v[0] - a.v[0], b.v[1] - a.v[1]],
                 h,
             };
-            let found = if is_rope {
-                first_beyond(&apart, longest)
-            } else {
-                first_longer(&apart, longest)
-            };
+            let found =
+                if is_rope { first_beyond(&apart, longest) } else { first_longer(&apart, longest) };
             let Some(share) = found else {
                 continue;
             };
@@ -240,9 +217,7 @@ impl Events {
             let obstacle = Some(step.body(pair.body)).filter(|obstacle| obstacle.is_flat())?;
             let x = row(step.ends[0], n, pair.particle);
             let pose = obstacle.at(0.0);
-            let seen = obstacle
-                .shape
-                .separation(pose.inwards(x - pose.place.position));
+            let seen = obstacle.shape.separation(pose.inwards(x - pose.place.position));
             Some((pair.particle, x, pose.outwards(seen.normal)))
         }));
         if faces.len() == pairs.len() {
@@ -312,16 +287,9 @@ impl Events {
             let [a, b] = ends.map(|i| course(&step.ends, i, step.h, n));
             let farthest = (0..2).map(|k| (a.x[k] - b.x[k]).norm()).fold(0.0, f64::max);
             // Half of the most by which one end can leave its chord relative to the other.
-            let bulge = 0.5
-                * (0..2)
-                    .map(|k| (a.v[k] - b.v[k]).norm() * step.h)
-                    .sum::<f64>();
+            let bulge = 0.5 * (0..2).map(|k| (a.v[k] - b.v[k]).norm() * step.h).sum::<f64>();
             if longest > 0.0 && farthest + bulge > longest {
-                self.springs.push(Stretching {
-                    ends,
-                    longest,
-                    is_rope,
-                });
+                self.springs.push(Stretching { ends, longest, is_rope });
             }
         }
     }
@@ -391,13 +359,8 @@ impl Searched<'_> {
         }
         let (pose, n) = (obstacle.at(self.t + self.h), self.network.particles());
         let x = course(&self.ends, particle, self.h, n).x[1];
-        let end = obstacle
-            .shape
-            .separation(pose.inwards(x - pose.place.position));
-        let shallow = self
-            .depths
-            .shallow
-            .min(0.25 * obstacle.shape.greatest_depth());
+        let end = obstacle.shape.separation(pose.inwards(x - pose.place.position));
+        let shallow = self.depths.shallow.min(0.25 * obstacle.shape.greatest_depth());
         (-shallow..=0.0).contains(&end.distance) && end.normal.dot(normal) > 0.5
     }
 
@@ -447,10 +410,7 @@ impl Searched<'_> {
                 let own = pose.place.velocity + spin.unwrap_or_default();
                 (seen.distance, normal.dot(&(row(3 * n, particle) - own)))
             }
-            EventKind::Stretch {
-                ends: [i, j],
-                longest,
-            } => {
+            EventKind::Stretch { ends: [i, j], longest } => {
                 let (d, v) = (row(0, j) - row(0, i), row(3 * n, j) - row(3 * n, i));
                 (longest - d.norm(), -d.dot(&v) / d.norm())
             }

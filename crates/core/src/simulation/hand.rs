@@ -124,12 +124,7 @@ impl<'a> Hand<'a> {
     fn way(&self, from: Vector3<f64>, to: Vector3<f64>) -> Path {
         let start = self.time;
         let time = PULL_TIME.max((to - from).norm() / (PULL_SPEED * self.radius));
-        Path::Line {
-            from,
-            to,
-            start,
-            end: start + time,
-        }
+        Path::Line { from, to, start, end: start + time }
     }
 
     /// Returns the farthest point towards `target` at which no spring of particle i and no edge of

@@ -226,11 +226,7 @@ impl Simulation {
     /// Returns the disturbances that act.
     #[must_use]
     pub fn disturbances(&self) -> Disturbances {
-        Disturbances {
-            wind: self.windy(),
-            swing: self.swinging(),
-            contact: self.touching(),
-        }
+        Disturbances { wind: self.windy(), swing: self.swinging(), contact: self.touching() }
     }
 
     /// Switches the scene's disturbances on or off, those of `on` and the others. A scene that does

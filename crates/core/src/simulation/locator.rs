@@ -117,14 +117,7 @@ impl Locator {
             return None;
         }
         let RunState { y, work, .. } = state;
-        let step = Searched {
-            network,
-            outflows: &self.outflows,
-            t,
-            h,
-            ends: [y0, y],
-            depths,
-        };
+        let step = Searched { network, outflows: &self.outflows, t, h, ends: [y0, y], depths };
         if y0.len() != y.len() || y.iter().any(|y| !y.is_finite()) {
             return None;
         }
@@ -140,24 +133,13 @@ impl Locator {
         let state = &mut self.events.state;
         let span = (t, h, depths.none);
         let mut evaluated = 0;
-        let stop = if has_ropes {
-            first_stop(&step, before, state, &mut state_at)
-        } else {
-            None
-        };
+        let stop = if has_ropes { first_stop(&step, before, state, &mut state_at) } else { None };
         let event = stop.or(event);
         let before = event.map_or(1.0, |event| event.share);
-        let end = first_end(
-            network,
-            (rests, scratch),
-            span,
-            before,
-            state,
-            &mut |share, out| {
-                evaluated += 1;
-                state_at(share, out);
-            },
-        );
+        let end = first_end(network, (rests, scratch), span, before, state, &mut |share, out| {
+            evaluated += 1;
+            state_at(share, out);
+        });
         let slackens = if has_ropes {
             let at = &mut |share: f64, out: &mut [f64]| {
                 evaluated += 1;
@@ -168,20 +150,15 @@ impl Locator {
             None
         };
         *work += Work::of(evaluated);
-        let end = end.map(|share| Event {
-            share,
-            kind: EventKind::Rested,
-        });
+        let end = end.map(|share| Event { share, kind: EventKind::Rested });
         slackens.or(end).or(event)
     }
 }
 
 /// Returns an outflow as an obstacle.
 fn obstacle(outflow: &Outflow) -> Obstacle {
-    let shape = Shape::Box {
-        half_extents: outflow.half,
-        axes: [Vector3::x(), Vector3::y(), Vector3::z()],
-    };
+    let shape =
+        Shape::Box { half_extents: outflow.half, axes: [Vector3::x(), Vector3::y(), Vector3::z()] };
     Obstacle::smooth(shape, Path::Still(outflow.at))
 }
 
@@ -206,20 +183,13 @@ fn first_stop(
     let none = step.depths.none;
     // A joint that begins at its end or beyond has passed it a little later.
     let passed = |value: f64| {
-        if -value > none {
-            0.0
-        } else {
-            none.max(value + 1e-3 * none)
-        }
+        if -value > none { 0.0 } else { none.max(value + 1e-3 * none) }
     };
     let mut found = vec![0.0; network.dim()];
     let mut margin = |share: f64| {
         state_at(share, &mut found);
         let now = open_ends(network, &found);
-        let left = begun
-            .iter()
-            .zip(&now)
-            .map(|(begun, now)| passed(begun.value) - now.value);
+        let left = begun.iter().zip(&now).map(|(begun, now)| passed(begun.value) - now.value);
         left.fold(f64::INFINITY, f64::min)
     };
     let ends = (1..=INTERVALS).map(|k| before * f64::from(k) / f64::from(INTERVALS));
@@ -227,10 +197,7 @@ fn first_stop(
     let share = first_negative(end, &mut margin)?;
     state.resize(network.dim(), 0.0);
     state_at(share, state);
-    Some(Event {
-        share,
-        kind: EventKind::Rested,
-    })
+    Some(Event { share, kind: EventKind::Rested })
 }
 
 /// Finds where a taut rope slackens before the share `before` of a step of h (s) from t (s), on the
@@ -254,8 +221,5 @@ fn first_slack(
     let share = first_negative(before, &mut margin)?;
     state.resize(network.dim(), 0.0);
     state_at(share, state);
-    Some(Event {
-        share,
-        kind: EventKind::Rested,
-    })
+    Some(Event { share, kind: EventKind::Rested })
 }

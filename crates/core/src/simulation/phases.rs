@@ -99,9 +99,9 @@ impl Phases {
         let layer = model.network().and_then(Network::contact_layer);
         let states = [self.y0(), y1];
         let is_known = states[0].len() == states[1].len();
-        layer.filter(|_| is_known).map_or(0.0, |layer| {
-            bulge(layer, Interval { t, h }, states, soft_count)
-        })
+        layer
+            .filter(|_| is_known)
+            .map_or(0.0, |layer| bulge(layer, Interval { t, h }, states, soft_count))
     }
 
     /// Applies impacts to the particles that touch an obstacle at the end of a step of h (s) that
@@ -235,9 +235,7 @@ impl Phases {
         let network = joints.network();
         let Some(layer) = network.contact_layer() else {
             let (obstacles, bodies) = (network.solids(), joints.bodies(are_struck));
-            let met = self
-                .contact
-                .resolve(obstacles, bodies, Interval { t, h }, y1);
+            let met = self.contact.resolve(obstacles, bodies, Interval { t, h }, y1);
             network.hold(t + h, y1);
             return Ok(met);
         };
@@ -245,9 +243,7 @@ impl Phases {
         if y1.iter().any(|y| !y.is_finite()) {
             return Ok(Statistics::default());
         }
-        let guarded = self
-            .contact
-            .guard(layer, joints.bodies(are_struck), Interval { t, h }, y1);
+        let guarded = self.contact.guard(layer, joints.bodies(are_struck), Interval { t, h }, y1);
         let met = guarded.map_err(|Pinched { vertices }| Cause::Pinched { vertices })?;
         if !network.bodies().is_empty() {
             network.hold(t + h, y1);
@@ -293,11 +289,7 @@ pub(super) fn first_beyond(apart: &Course, longest: f64) -> Option<f64> {
     let (mut low, mut high) = (end(k - 1), end(k));
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
-        *(if is_longer(middle) {
-            &mut high
-        } else {
-            &mut low
-        }) = middle;
+        *(if is_longer(middle) { &mut high } else { &mut low }) = middle;
     }
     Some(high)
 }
@@ -318,11 +310,7 @@ struct JointsOf<'a> {
 
 impl<'a> JointsOf<'a> {
     pub fn new(network: &'a Network, may_lag: bool) -> Self {
-        Self {
-            network,
-            may_lag,
-            noted: Cell::default(),
-        }
+        Self { network, may_lag, noted: Cell::default() }
     }
 
     pub fn network(&self) -> &'a Network {

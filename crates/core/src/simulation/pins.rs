@@ -22,12 +22,7 @@ pub(super) fn leave(position: Vector3<f64>, swing: Option<Swing>, phase: f64, t:
         None => Path::Still(position),
         Some(Swing { amplitude, rate }) => {
             let center = position - amplitude * libm::sin(rate * t + phase);
-            Path::Sine {
-                center,
-                amplitude,
-                rate,
-                phase,
-            }
+            Path::Sine { center, amplitude, rate, phase }
         }
     }
 }

@@ -299,9 +299,7 @@ impl PinWork {
         }
         if let Some(g) = network.gravity() {
             let weights = self.paths.iter().enumerate();
-            power -= weights
-                .map(|(k, (_, m))| m * g.dot(&row(k, 3)))
-                .sum::<f64>();
+            power -= weights.map(|(k, (_, m))| m * g.dot(&row(k, 3))).sum::<f64>();
         }
         power
     }

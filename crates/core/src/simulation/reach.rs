@@ -23,11 +23,7 @@ pub(super) struct Part {
 impl Part {
     /// Creates a part of h (s) from time t (s), which ends at an event.
     pub fn of(t: f64, h: f64) -> Self {
-        Self {
-            h,
-            end: t + h,
-            ends_at_event: true,
-        }
+        Self { h, end: t + h, ends_at_event: true }
     }
 }
 
@@ -45,9 +41,7 @@ pub(super) fn next_change(model: &Model, t: f64, none: f64) -> f64 {
 pub(super) fn begin_of(model: &Model, t: f64, none: f64) -> f64 {
     match model.network() {
         Some(_) => t,
-        None => Some(model.system().next_jump(t))
-            .filter(|jump| *jump <= t + none)
-            .unwrap_or(t),
+        None => Some(model.system().next_jump(t)).filter(|jump| *jump <= t + none).unwrap_or(t),
     }
 }
 
@@ -60,10 +54,7 @@ pub(super) struct Reach {
 
 impl Default for Reach {
     fn default() -> Self {
-        Self {
-            longest: f64::INFINITY,
-            until: None,
-        }
+        Self { longest: f64::INFINITY, until: None }
     }
 }
 
@@ -97,14 +88,9 @@ impl Reach {
     /// Returns the same limits if they end where the velocity of a pin jumps that constraints hold,
     /// or within `none` (s) of it, but with all evaluations before that.
     pub fn before_jump(self, network: &Network, t: f64, none: f64) -> Self {
-        let jump = self
-            .until
-            .and_then(|end| Some((end, jump_near(network, end, none)?)));
+        let jump = self.until.and_then(|end| Some((end, jump_near(network, end, none)?)));
         match jump {
-            Some((end, jump)) => Self {
-                until: Some(end),
-                ..Self::up_to(t, jump.min(end))
-            },
+            Some((end, jump)) => Self { until: Some(end), ..Self::up_to(t, jump.min(end)) },
             None => self,
         }
     }
@@ -133,20 +119,10 @@ impl Reach {
             return self;
         };
         if target <= until {
-            return Self {
-                longest: target - t,
-                until: Some(target),
-            };
+            return Self { longest: target - t, until: Some(target) };
         }
-        let until = if target <= until + none {
-            target
-        } else {
-            until
-        };
-        Self {
-            until: Some(until),
-            ..self
-        }
+        let until = if target <= until + none { target } else { until };
+        Self { until: Some(until), ..self }
     }
 
     /// Returns the limits of a step from t up to a time `until` (s) at which a motion changes. All
@@ -160,30 +136,20 @@ impl Reach {
         while t + longest >= until && longest > 0.0 {
             longest = longest.next_down().min(longest - digit);
         }
-        Self {
-            longest,
-            until: Some(until),
-        }
+        Self { longest, until: Some(until) }
     }
 
     /// Limits the length (s). A shorter step does not end at the known time.
     fn limit(&mut self, longest: f64) {
         if longest < self.longest {
-            *self = Self {
-                longest,
-                until: None,
-            };
+            *self = Self { longest, until: None };
         }
     }
 
     /// Returns the part that a step of h (s) from t covers.
     pub fn part(&self, t: f64, h: f64) -> Part {
         let until = self.until.filter(|_| h == self.longest);
-        Part {
-            h,
-            end: until.unwrap_or(t + h),
-            ends_at_event: until.is_some(),
-        }
+        Part { h, end: until.unwrap_or(t + h), ends_at_event: until.is_some() }
     }
 }
 

@@ -46,9 +46,7 @@ impl Rest {
     /// Returns whether a particle rests on an obstacle, given by their numbers.
     pub fn is_listed(rests: &[Self], particle: usize, obstacle: usize) -> bool {
         let key = |rest: &Self| (rest.obstacle, rest.particle);
-        rests
-            .binary_search_by_key(&(obstacle, particle), key)
-            .is_ok()
+        rests.binary_search_by_key(&(obstacle, particle), key).is_ok()
     }
 }
 
@@ -136,11 +134,7 @@ impl Slide {
     /// Creates a slide in the direction of a vector, unless that is 0.
     fn of(along: Vector3<f64>, speed: f64, slack: f64) -> Option<Self> {
         let along = along.try_normalize(0.0)?;
-        Some(Self {
-            along,
-            speed,
-            slack,
-        })
+        Some(Self { along, speed, slack })
     }
 }
 
@@ -184,10 +178,7 @@ impl Rests {
         let most = network.solids().len() * network.particles();
         Self {
             now: Vec::with_capacity(most),
-            scratch: Scratch {
-                state: vec![0.0; network.dim()],
-                free: vec![0.0; network.dim()],
-            },
+            scratch: Scratch { state: vec![0.0; network.dim()], free: vec![0.0; network.dim()] },
         }
     }
 
@@ -217,10 +208,8 @@ impl Rests {
                 let inner = pose.inwards(row(y, n, particle) - pose.place.position);
                 let seen = obstacle.shape.separation(inner);
                 if seen.distance.abs() <= depths.none {
-                    let face = Face {
-                        point: inner - seen.normal * seen.distance,
-                        normal: seen.normal,
-                    };
+                    let face =
+                        Face { point: inner - seen.normal * seen.distance, normal: seen.normal };
                     self.now.push(Rest {
                         particle,
                         obstacle: k,
@@ -295,9 +284,7 @@ impl Rests {
             [rest.particle, rest.obstacle, slides]
         });
         // Fowler, Noll and Vo's hash.
-        parts.fold(0, |hash: u64, part| {
-            (hash ^ (part as u64 + 1)).wrapping_mul(0x0100_0000_01b3)
-        })
+        parts.fold(0, |hash: u64, part| (hash ^ (part as u64 + 1)).wrapping_mul(0x0100_0000_01b3))
     }
 }
 
@@ -328,9 +315,8 @@ pub(super) fn first_end(
     let mut margin = |share: f64, found: &mut [f64]| {
         state_at(share, found);
         network.eval_f(t + share * h, found, free);
-        let margins = rests
-            .iter()
-            .map(|rest| rest.margin(network, (t + share * h, none), found, free));
+        let margins =
+            rests.iter().map(|rest| rest.margin(network, (t + share * h, none), found, free));
         margins.fold(f64::INFINITY, f64::min)
     };
     let share = first_negative(before, |share| margin(share, found))?;
@@ -435,11 +421,7 @@ impl Rest {
         let slip = seen.slide();
         // Below its slack, friction turns a slip faster than any step can follow: it points where
         // the particle is driven.
-        let slides = if slip.norm() > slack {
-            slip
-        } else {
-            seen.along(driven)
-        };
+        let slides = if slip.norm() > slack { slip } else { seen.along(driven) };
         // Past its turning point the slide continues as if friction did not turn: the step ends at
         // that point, and its polynomial stays smooth.
         let direction = match slides.try_normalize(0.0) {

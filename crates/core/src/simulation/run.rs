@@ -123,12 +123,7 @@ impl Simulation {
     /// surfaces stay as they are, unless surfaces cross at the beginning. The hand lets go.
     pub fn reset(&mut self) {
         let disturbances = self.disturbances();
-        let RunState {
-            method,
-            control,
-            unpinned,
-            ..
-        } = self.state;
+        let RunState { method, control, unpinned, .. } = self.state;
         self.model = self.scene.model.clone();
         self.state = RunState::new(method, control, self.scene.state.clone());
         self.driver.pipeline.phases.contact.forget_impulses();
@@ -193,9 +188,7 @@ impl Simulation {
     /// The run blew up, now or earlier.
     pub fn take_steps(&mut self, count: u64) -> Result<(), Error> {
         self.save_if_sound()?;
-        let taken = self
-            .driver
-            .take_steps(&mut self.model, &mut self.state, count);
+        let taken = self.driver.take_steps(&mut self.model, &mut self.state, count);
         taken.map_err(|failure| self.fail(failure))
     }
 
@@ -399,8 +392,7 @@ impl Simulation {
     /// Goes back to the last sound state.
     fn go_back(&mut self) -> Result<(), Error> {
         let (model, state) = (&mut self.model, &mut self.state);
-        self.good
-            .put_back(&self.scene, model, state, &mut self.driver)
+        self.good.put_back(&self.scene, model, state, &mut self.driver)
     }
 
     /// Returns the run as it is now, with the last step of an adaptive method: some 20 arrays of

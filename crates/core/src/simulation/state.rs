@@ -65,10 +65,7 @@ impl RunState {
         let (model, y) = (&scene.model, &scene.state);
         let dim = model.system().dim();
         if y.len() != dim {
-            return Err(Error::Dimension {
-                expected: dim,
-                found: y.len(),
-            });
+            return Err(Error::Dimension { expected: dim, found: y.len() });
         }
         if dim == 0 || matches!(model, Model::Points(_)) && dim % 3 != 0 {
             return Err(Error::Invalid(format!(
@@ -118,13 +115,7 @@ impl RunState {
 
     /// Returns the blow-up of the run by a cause, at a time (s).
     pub(super) fn blow_up(&self, cause: Cause, time: f64) -> BlowUp {
-        BlowUp {
-            method: self.method.title,
-            control: self.control,
-            step: self.steps,
-            time,
-            cause,
-        }
+        BlowUp { method: self.method.title, control: self.control, step: self.steps, time, cause }
     }
 
     /// Returns the simulated time, which is shown (s).
@@ -170,10 +161,7 @@ mod by_name {
 
     use crate::integrators::{Method, find};
 
-    #[expect(
-        clippy::trivially_copy_pass_by_ref,
-        reason = "serde passes a reference"
-    )]
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     pub fn serialize<S: Serializer>(method: &&'static Method, to: S) -> Result<S::Ok, S::Error> {
         to.serialize_str(method.name)
     }

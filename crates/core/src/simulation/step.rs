@@ -190,13 +190,8 @@ impl Pipeline {
         };
         let reach = network.map_or(reach, |network| reach.before_jump(network, t, none));
         self.locator.list_rests(model, state, stepper, t, depths);
-        let mut plan = Plan {
-            t,
-            reach,
-            depths,
-            locates: locates && splits,
-            divides: divides && !locates,
-        };
+        let mut plan =
+            Plan { t, reach, depths, locates: locates && splits, divides: divides && !locates };
         loop {
             match self.attempt(model, state, plan) {
                 Ok(taken) => return Ok(Ok(taken)),
@@ -217,20 +212,14 @@ impl Pipeline {
     fn limits_of_flight(&self, model: &Model, y: &[f64]) -> StepLimits {
         let network = model.network();
         let arrives = |it: &&Network| !it.obstacles().is_empty() || !outflows(it).is_empty();
-        let Some(network) = network
-            .filter(arrives)
-            .filter(|_| self.stepper.is_adaptive())
-        else {
+        let Some(network) = network.filter(arrives).filter(|_| self.stepper.is_adaptive()) else {
             return self.limits;
         };
         let v = &y[3 * network.particles()..6 * network.particles()];
         let fastest = v.iter().fold(0.0_f64, |fastest, v| fastest.max(v.abs()));
         let longest = MAX_FLIGHT * self.bounds.radius / fastest;
         let max_step = self.limits.max_step.unwrap_or(f64::INFINITY).min(longest);
-        StepLimits {
-            max_step: Some(max_step),
-            ..self.limits
-        }
+        StepLimits { max_step: Some(max_step), ..self.limits }
     }
 
     /// Takes a step once: integrates, ends it at an event, and settles its end.
@@ -259,15 +248,8 @@ impl Pipeline {
             return Err(Setback::Again { h, share });
         }
         let (order, y) = (state.method.order, &state.y[..]);
-        let end = End {
-            order,
-            t: part.end,
-            y,
-        };
-        if let Some(cause) = self
-            .watch
-            .check_before_safeguard(model, &mut state.balance, end)
-        {
+        let end = End { order, t: part.end, y };
+        if let Some(cause) = self.watch.check_before_safeguard(model, &mut state.balance, end) {
             return Err(Setback::BlowUp(cause));
         }
         self.phases.may_lag = !self.stepper.is_adaptive();
@@ -343,20 +325,14 @@ impl Pipeline {
         whole: Part,
     ) -> Result<Part, Setback> {
         let (stepper, y0, h) = (&mut self.stepper, self.phases.y0(), whole.h);
-        let event = self
-            .locator
-            .first_event(model, state, stepper, y0, Interval { t, h }, depths);
+        let event = self.locator.first_event(model, state, stepper, y0, Interval { t, h }, depths);
         let Some(Event { share, kind }) = event else {
             return Ok(whole);
         };
         if matches!(kind, EventKind::Sunk) {
             let share = MIN_RETRY_SHARE.max(0.9 * share);
             let again = h > MIN_RETRY_STEP && self.stepper.is_adaptive();
-            return if again {
-                Err(Setback::Again { h, share })
-            } else {
-                Ok(whole)
-            };
+            return if again { Err(Setback::Again { h, share }) } else { Ok(whole) };
         }
         let part = Part::of(t, share * h);
         state.y.copy_from_slice(self.locator.state());
@@ -436,14 +412,10 @@ fn cause_of(error: Error, model: &Model) -> Result<Cause, Error> {
         Error::NotFinite { component, .. } => Ok(not_finite(model, component)),
         Error::StepTooSmall { step, .. } => Ok(Cause::StepTooSmall { step }),
         Error::NoConvergence { residual } => Ok(Cause::NoConvergence { residual }),
-        Error::Unsupported {
-            why: Refusal::ReadsVelocity,
-            ..
-        } => Ok(Cause::ReadsVelocity),
-        Error::Unsupported {
-            why: Refusal::TooDense { numbers, most },
-            ..
-        } => Ok(Cause::TooDense { numbers, most }),
+        Error::Unsupported { why: Refusal::ReadsVelocity, .. } => Ok(Cause::ReadsVelocity),
+        Error::Unsupported { why: Refusal::TooDense { numbers, most }, .. } => {
+            Ok(Cause::TooDense { numbers, most })
+        }
         error => Err(error),
     }
 }
@@ -530,7 +502,5 @@ fn not_finite(model: &Model, k: usize) -> Cause {
     let body = k.checked_sub(6 * n).map(|k| k / ROTATION);
     let network = model.network();
     let body = body.and_then(|body| network?.bodies().get(body));
-    Cause::NotFinite {
-        particle: body.map_or(k % n, Body::center),
-    }
+    Cause::NotFinite { particle: body.map_or(k % n, Body::center) }
 }

@@ -57,13 +57,7 @@ pub(super) struct Watch {
 impl Watch {
     /// Creates a watch over runs of a scene with that radius (m).
     pub fn new(radius: f64, limits: StepLimits) -> Self {
-        Self {
-            power: Power::default(),
-            radius,
-            limits,
-            last: (0.0, 0.0),
-            scratch: vec![],
-        }
+        Self { power: Power::default(), radius, limits, last: (0.0, 0.0), scratch: vec![] }
     }
 
     /// Starts to watch a run at the beginning of its steps.
@@ -142,9 +136,7 @@ impl Watch {
             let rest = work * (end - t) / (end - begin);
             state.balance.take_back(rest);
         }
-        state
-            .balance
-            .check(network, (t, &state.y), &mut self.scratch);
+        state.balance.check(network, (t, &state.y), &mut self.scratch);
         state.balance.disturb();
     }
 
@@ -249,14 +241,8 @@ impl Watch {
         if let Some(unmet) = &worst {
             balance.note(unmet);
         }
-        let gained = if is_due {
-            balance.check(network, (t, y), &mut self.scratch)
-        } else {
-            None
-        };
-        let broken = worst
-            .filter(|unmet| unmet.share > MAX_CONSTRAINT_ERROR)
-            .map(Cause::Unmet);
+        let gained = if is_due { balance.check(network, (t, y), &mut self.scratch) } else { None };
+        let broken = worst.filter(|unmet| unmet.share > MAX_CONSTRAINT_ERROR).map(Cause::Unmet);
         let lost = lost.filter(|_| !balance.is_sound());
         broken.or(lost).or(gained)
     }
@@ -297,10 +283,6 @@ fn kick(network: &Network, Interval { t, h }: Interval, y: &[f64], rates: &mut V
 fn fastest(obstacle: &Obstacle, t: f64, reach: impl Fn(Vector3<f64>) -> f64) -> f64 {
     let pose = obstacle.at(t);
     let spin = pose.orientation.map_or(0.0, |turned| turned.spin.norm());
-    let turning = if spin > 0.0 {
-        spin * reach(pose.place.position)
-    } else {
-        0.0
-    };
+    let turning = if spin > 0.0 { spin * reach(pose.place.position) } else { 0.0 };
     pose.place.velocity.norm() + turning
 }

@@ -74,11 +74,8 @@ pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Er
         let mut growth = Growth::new(method, mode)?;
         // Rate of the fastest motion, by stiffness or by damping.
         let rate = mode.frequency().max(mode.drag + mode.damping);
-        let so_far = limit.unwrap_or(Limit {
-            bounded: f64::INFINITY,
-            step: f64::INFINITY,
-            mode: k,
-        });
+        let so_far =
+            limit.unwrap_or(Limit { bounded: f64::INFINITY, step: f64::INFINITY, mode: k });
         // The search is fine for the first mode. Other modes rarely lower the limit.
         let ratio = if limit.is_none() { 1.05 } else { 1.25 };
         let tenfold = |h: f64| growth.of_step(h).ln() * tenfold_time(h) > h * GROWTH.ln();
@@ -95,11 +92,7 @@ pub fn largest_step(method: &Method, modes: &[Mode]) -> Result<Option<Limit>, Er
             f64::INFINITY
         };
         growth.check()?;
-        limit = Some(Limit {
-            bounded,
-            step,
-            mode,
-        });
+        limit = Some(Limit { bounded, step, mode });
     }
     Ok(limit)
 }
@@ -184,16 +177,9 @@ impl Growth {
     /// # Errors
     /// The method does not support damped springs, which damp the mode.
     pub fn new(method: &Method, mode: Mode) -> Result<Self, Error> {
-        let system = Tied {
-            mode,
-            is_linearized: !method.plain_only(),
-        };
+        let system = Tied { mode, is_linearized: !method.plain_only() };
         let integrator = method.integrator(&system)?;
-        Ok(Self {
-            system,
-            integrator,
-            failure: None,
-        })
+        Ok(Self { system, integrator, failure: None })
     }
 
     /// Checks that no callback has failed in a step.
@@ -229,16 +215,9 @@ impl Growth {
         };
         let (half_trace, determinant) = (0.5 * (a + d), a * d - b * c);
         let square = half_trace * half_trace - determinant;
-        let radius = if square < 0.0 {
-            determinant.sqrt()
-        } else {
-            half_trace.abs() + square.sqrt()
-        };
-        if radius.is_nan() {
-            f64::INFINITY
-        } else {
-            radius
-        }
+        let radius =
+            if square < 0.0 { determinant.sqrt() } else { half_trace.abs() + square.sqrt() };
+        if radius.is_nan() { f64::INFINITY } else { radius }
     }
 
     /// Returns the ratio of the largest to the smallest energy of a mode in steps of h (s), without

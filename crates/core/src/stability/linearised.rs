@@ -58,11 +58,7 @@ pub(super) struct AtRest<'a> {
 
 impl<'a> AtRest<'a> {
     pub fn new(mechanics: &'a dyn Linearized, x: &'a [f64]) -> Self {
-        Self {
-            mechanics,
-            x,
-            zero: vec![0.0; x.len()],
-        }
+        Self { mechanics, x, zero: vec![0.0; x.len()] }
     }
 
     /// Finds the largest step of a method, searched from an expected one (s). The fastest motion
@@ -182,11 +178,7 @@ pub(super) fn longest_that_holds(
     let longest = GUESS_RANGE[1] * guess;
     let mut low = if large { LARGE_START } else { GUESS_RANGE[0] } * guess;
     while fails(low)? {
-        low *= if large {
-            1.0 / STEP_RATIO
-        } else {
-            GUESS_RANGE[0]
-        };
+        low *= if large { 1.0 / STEP_RATIO } else { GUESS_RANGE[0] };
         if low < 1e-4 * guess {
             return Ok(None);
         }
@@ -268,8 +260,7 @@ impl Linearized for AtRest<'_> {
         dv: &[f64],
         df: &mut [f64],
     ) {
-        self.mechanics
-            .force_differential(t, self.x, &self.zero, dx, dv, df);
+        self.mechanics.force_differential(t, self.x, &self.zero, dx, dv, df);
     }
 
     fn couplings(&self, t: f64, _x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
@@ -326,11 +317,7 @@ impl Jacobian {
             }
         }
         let finite = matrix.iter().all(|a| a.is_finite());
-        finite.then_some(Self {
-            matrix,
-            unknowns,
-            length: y.len(),
-        })
+        finite.then_some(Self { matrix, unknowns, length: y.len() })
     }
 
     /// Returns the modes of the system: one for each real eigenvalue and each conjugate pair. The
@@ -343,9 +330,8 @@ impl Jacobian {
         let part = |a: f64| if a.abs() < ROUNDING * scale { 0.0 } else { a };
         let found = eigenvalues(&self.matrix).into_iter();
         let found = found.map(|l| [part(l.re), part(l.im)]);
-        let (real, pairs): (Vec<_>, Vec<_>) = found
-            .filter(|l| *l != [0.0, 0.0])
-            .partition(|[_, im]| *im == 0.0);
+        let (real, pairs): (Vec<_>, Vec<_>) =
+            found.filter(|l| *l != [0.0, 0.0]).partition(|[_, im]| *im == 0.0);
         let (growing, mut decaying): (Vec<_>, Vec<_>) =
             real.into_iter().map(|[re, _]| re).partition(|re| *re > 0.0);
         let mut modes: Vec<_> = (pairs.into_iter().filter(|[_, im]| *im > 0.0))
@@ -393,11 +379,7 @@ fn fall(growing: f64, decaying: &mut Vec<f64>, most: f64) -> Mode {
     match nearest.filter(|k| near(&decaying[*k]) < most * decaying[*k].abs()) {
         Some(k) => {
             let other = decaying.remove(k);
-            Mode {
-                stiffness: growing * other,
-                drag: -(growing + other),
-                ..Mode::default()
-            }
+            Mode { stiffness: growing * other, drag: -(growing + other), ..Mode::default() }
         }
         None => Mode::of_eigenvalue(growing, 0.0),
     }

@@ -41,11 +41,7 @@ impl Mode {
     /// Creates a mode with the eigenvalue re + i im (1/s) and its conjugate, damped by drag.
     #[must_use]
     pub fn of_eigenvalue(re: f64, im: f64) -> Self {
-        Self {
-            stiffness: re * re + im * im,
-            drag: -2.0 * re,
-            ..Self::default()
-        }
+        Self { stiffness: re * re + im * im, drag: -2.0 * re, ..Self::default() }
     }
 
     /// Returns the angular frequency w of the undamped mode (rad/s); 0 for negative stiffness.
@@ -108,9 +104,7 @@ pub fn fastest(modes: &[Mode], feedback: Option<f64>) -> Option<&Mode> {
     let mean = Mode::of_eigenvalue(sum / parts().count() as f64, 0.0);
     let share = if is_near(&mean, close) { split } else { close };
     let is_feedback = |mode: &Mode| is_near(mode, share);
-    modes
-        .iter()
-        .find(|mode| mode.returns() && !is_feedback(mode))
+    modes.iter().find(|mode| mode.returns() && !is_feedback(mode))
 }
 
 /// Sorts modes, the fastest first.
@@ -149,13 +143,7 @@ pub(super) struct Normalised<'a> {
 
 impl<'a> Normalised<'a> {
     pub fn new(mechanics: &'a dyn Linearized, t: f64, x: &'a [f64]) -> Self {
-        Self {
-            mechanics,
-            t,
-            x,
-            zero: vec![0.0; x.len()],
-            scaled: vec![0.0; x.len()],
-        }
+        Self { mechanics, t, x, zero: vec![0.0; x.len()], scaled: vec![0.0; x.len()] }
     }
 
     /// Replaces z by M^-1/2 z.
@@ -173,13 +161,8 @@ impl<'a> Normalised<'a> {
         let mut scaled = std::mem::take(&mut self.scaled);
         scaled.copy_from_slice(z);
         self.scale(&mut scaled);
-        let (dx, dv) = if damping {
-            (&self.zero, &scaled)
-        } else {
-            (&scaled, &self.zero)
-        };
-        self.mechanics
-            .force_differential(self.t, self.x, &self.zero, dx, dv, out);
+        let (dx, dv) = if damping { (&self.zero, &scaled) } else { (&scaled, &self.zero) };
+        self.mechanics.force_differential(self.t, self.x, &self.zero, dx, dv, out);
         self.scaled = scaled;
         self.scale(out);
         for out in out {

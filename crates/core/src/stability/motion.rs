@@ -93,9 +93,7 @@ impl Motion {
         let mut beside = start(disturbed(scene, SEPARATION * run.extent().1))?;
         let count = MAX_INTERVALS.min(MAX_COORDINATES / (2 * n)).max(50);
         let interval = HORIZON / count as f64;
-        let mut moments = MOMENTS
-            .map(|part| (part * count as f64).round() as usize)
-            .into_iter();
+        let mut moments = MOMENTS.map(|part| (part * count as f64).round() as usize).into_iter();
         let mut moment = moments.next();
         let first = distance(&run.state()[..n], &beside.state()[..n]);
         let mut motion = Self {
@@ -119,9 +117,7 @@ impl Motion {
                 break;
             }
             if moment == Some(k) {
-                motion
-                    .modes
-                    .extend(spectrum(run.model().system(), time, run.state()));
+                motion.modes.extend(spectrum(run.model().system(), time, run.state()));
                 moment = moments.next();
             }
             let level = level(&run);
@@ -131,12 +127,8 @@ impl Motion {
                 // Only the energy and the modes are still needed.
                 continue;
             }
-            motion
-                .states
-                .push((run.state()[..n].to_vec(), run.velocities()));
-            motion.size = motion
-                .size
-                .max(distance(&run.state()[..n], &scene.state[..n]));
+            motion.states.push((run.state()[..n].to_vec(), run.velocities()));
+            motion.size = motion.size.max(distance(&run.state()[..n], &scene.state[..n]));
             let apart = if succeeded(beside.advance_to(time))? {
                 distance(&run.state()[..n], &beside.state()[..n])
             } else {
@@ -147,9 +139,7 @@ impl Motion {
             }
         }
         // A scene at rest has no motion of its own to compare growth with.
-        kinetic = kinetic
-            .max(1e-6 * motion.most[0].abs())
-            .max(f64::MIN_POSITIVE);
+        kinetic = kinetic.max(1e-6 * motion.most[0].abs()).max(f64::MIN_POSITIVE);
         motion.most[1] = match scene.model {
             Model::Network(_) => MAX_EXCESS * kinetic,
             Model::FirstOrder(_) | Model::Points(_) => (GROWTH - 1.0) * kinetic,
@@ -180,21 +170,13 @@ impl Motion {
         let limit = largest_step(method, &self.modes)?;
         let expected = limit.map_or(1.0, |limit| limit.step);
         let mut moving = vec![];
-        for mode in self
-            .modes
-            .iter()
-            .filter(|m| m.returns() && expected.is_finite())
-        {
+        for mode in self.modes.iter().filter(|m| m.returns() && expected.is_finite()) {
             moving.push(Growth::new(method, *mode)?);
         }
         let moving = RefCell::new(moving);
         let holds = |h: f64, times: u64| {
             let swing = |growth: &mut Growth| growth.swing(h);
-            let swings = moving
-                .borrow_mut()
-                .iter_mut()
-                .map(swing)
-                .fold(1.0, f64::max);
+            let swings = moving.borrow_mut().iter_mut().map(swing).fold(1.0, f64::max);
             let most = self.most[0] + self.most[1] * swings.min(MAX_SWING);
             let count = budget.room(method, &self.scene.model, steps(h, expected));
             let cost = count as f64 * work * f64::from(method.evaluations);
@@ -209,10 +191,7 @@ impl Motion {
         };
         let mut seen = bisect(expected, work, PRECISION, false, |h| holds(h, 1))?;
         let sharp = limit.is_none_or(|limit| limit.is_sharp());
-        if let Some(seen) = seen
-            .as_mut()
-            .filter(|seen| !seen.is_open() && !budget.limits())
-        {
+        if let Some(seen) = seen.as_mut().filter(|seen| !seen.is_open() && !budget.limits()) {
             *seen = sharpen(*seen, sharp, (LONG_RUN_FACTOR, PRECISION), holds)?;
         }
         Ok(seen.filter(|_| go_on()))
@@ -269,11 +248,7 @@ impl Motion {
             let edge = 0.99 * MAX_STEP_RATIO.ln();
             let middle = low.0 * (gap * part).clamp(edge, (gap - edge).max(edge)).exp();
             // The search ends if this run fails, however large its error is.
-            let most = if middle <= MAX_STEP_RATIO * low.0 {
-                1.0
-            } else {
-                most
-            };
+            let most = if middle <= MAX_STEP_RATIO * low.0 { 1.0 } else { most };
             let error = self.error(method, middle, most, budget)?;
             let Some(error) = error.filter(|_| go_on()) else {
                 break;

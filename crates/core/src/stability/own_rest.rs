@@ -54,11 +54,7 @@ pub(super) fn own_rest(scene: &Scene, method: &'static Method, h: f64) -> Result
         Ok::<_, Error>(squares.sum::<f64>())
     };
     let is_calmer = change(&found)? < change(&scene.state)?;
-    Ok(if is_calmer {
-        found
-    } else {
-        scene.state.clone()
-    })
+    Ok(if is_calmer { found } else { scene.state.clone() })
 }
 
 /// Finds the largest step (s) of a method on a scene at rest at which no small change of the
@@ -195,11 +191,7 @@ impl<'a> StepMap<'a> {
     fn moved(&self, y: &[f64], share: f64, z: &[f64]) -> Vec<f64> {
         let mut moved = y.to_vec();
         for ((y, z), length) in moved.iter_mut().zip(z).zip(&self.lengths) {
-            *y += if *length > 0.0 {
-                share * z / length
-            } else {
-                0.0
-            };
+            *y += if *length > 0.0 { share * z / length } else { 0.0 };
         }
         self.system.hold(0.0, &mut moved);
         moved
@@ -259,9 +251,8 @@ fn gmres(
         basis.push(next);
     }
     let count = columns.len();
-    let matrix = DMatrix::from_fn(count + 1, count, |i, j| {
-        columns[j].get(i).copied().unwrap_or(0.0)
-    });
+    let matrix =
+        DMatrix::from_fn(count + 1, count, |i, j| columns[j].get(i).copied().unwrap_or(0.0));
     if !matrix.iter().all(|a| a.is_finite()) {
         return Ok(None);
     }

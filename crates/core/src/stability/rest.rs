@@ -91,22 +91,12 @@ impl RestState {
             let jacobian = Jacobian::of(network, 0.0, &scene.state)?;
             let mut modes = jacobian.modes(network);
             sort(&mut modes);
-            return Some(Self {
-                scene,
-                modes,
-                shapes: RestShapes::Whole(jacobian),
-            });
+            return Some(Self { scene, modes, shapes: RestShapes::Whole(jacobian) });
         }
         let (x, _) = network.halves(&scene.state);
-        let Undamped {
-            mut modes,
-            mut shapes,
-            mixing,
-        } = shapes(network, 0.0, x);
+        let Undamped { mut modes, mut shapes, mixing } = shapes(network, 0.0, x);
         let mixes = mixing > Mixing::None;
-        let pencil = mixes
-            .then(|| Pencil::of(network, 0.0, x, MAX_DENSE_UNKNOWNS))
-            .flatten();
+        let pencil = mixes.then(|| Pencil::of(network, 0.0, x, MAX_DENSE_UNKNOWNS)).flatten();
         let mixed = pencil.and_then(|pencil| Some((pencil.modes(&modes)?, pencil)));
         let shapes = if let Some((mixed, pencil)) = mixed {
             modes = mixed;
@@ -120,11 +110,7 @@ impl RestState {
             }
             RestShapes::Approximate(shapes)
         };
-        Some(Self {
-            scene,
-            modes,
-            shapes,
-        })
+        Some(Self { scene, modes, shapes })
     }
 
     /// Finds the largest steps of a method on the scene at rest, as by [`largest_step`] on its
@@ -155,11 +141,7 @@ impl RestState {
             return Ok(by_modes);
         };
         let fastest = self.modes.first().map_or(1.0, Mode::frequency);
-        let guess = if limit.step.is_finite() {
-            limit.step
-        } else {
-            1.0 / fastest
-        };
+        let guess = if limit.step.is_finite() { limit.step } else { 1.0 / fastest };
         let half = self.scene.state.len() / 2;
         let whole = matches!(self.shapes, RestShapes::Whole(_));
         let step = if whole || self.scene.state.len() <= MAX_MAPPED_LENGTH {
@@ -167,11 +149,7 @@ impl RestState {
         } else {
             AtRest::new(network, &self.scene.state[..half]).largest_step(method, guess, fastest)?
         };
-        let found = step.map(|step| Limit {
-            bounded: step,
-            step,
-            ..limit
-        });
+        let found = step.map(|step| Limit { bounded: step, step, ..limit });
         Ok(found.or(by_modes))
     }
 
@@ -308,11 +286,7 @@ fn settle(
             run.set_control(Control::Step(next))?;
             continue;
         }
-        let positions = |y| {
-            run.model()
-                .network()
-                .map_or(y, |network| network.halves(y).0)
-        };
+        let positions = |y| run.model().network().map_or(y, |network| network.halves(y).0);
         let [now, before] = [run.state(), &before].map(positions);
         let squares = now.iter().zip(before).map(|(a, b)| (a - b).powi(2));
         let moved = (squares.sum::<f64>() / now.len() as f64).sqrt();

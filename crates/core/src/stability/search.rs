@@ -54,11 +54,7 @@ struct Trials<F> {
 
 impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
     fn new(holds: F) -> Self {
-        Self {
-            holds,
-            runs: 0,
-            tried: vec![],
-        }
+        Self { holds, runs: 0, tried: vec![] }
     }
 
     fn hold(&mut self, h: f64) -> Result<bool, Stop> {
@@ -156,10 +152,7 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
 
     /// Returns the shortest step that failed, from a limit (s) on.
     fn shortest_that_failed(&self, limit: f64) -> Option<f64> {
-        let failed = self
-            .tried
-            .iter()
-            .filter(|(h, holds)| !*holds && *h >= limit);
+        let failed = self.tried.iter().filter(|(h, holds)| !*holds && *h >= limit);
         failed.map(|(h, _)| *h).min_by(f64::total_cmp)
     }
 
@@ -177,12 +170,11 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
 
     /// Returns the result of the trials, if any step held.
     fn observation(&self) -> Option<Observation> {
-        self.longest_that_held(f64::INFINITY)
-            .map(|held| Observation {
-                held,
-                failed: self.shortest_that_failed(0.0).unwrap_or(f64::INFINITY),
-                runs: self.runs,
-            })
+        self.longest_that_held(f64::INFINITY).map(|held| Observation {
+            held,
+            failed: self.shortest_that_failed(0.0).unwrap_or(f64::INFINITY),
+            runs: self.runs,
+        })
     }
 }
 
@@ -203,11 +195,7 @@ pub(super) fn bisect(
 ) -> Result<Option<Observation>, Error> {
     let shortest = (HORIZON * work / MAX_RUN_WORK).max(1e-6);
     let limited = expected.is_finite();
-    let longest = if limited {
-        MAX_LIMIT_RATIO * expected
-    } else {
-        MAX_STEP
-    };
+    let longest = if limited { MAX_LIMIT_RATIO * expected } else { MAX_STEP };
     let guess = expected.min(longest);
     if guess < shortest {
         return Ok(None);
@@ -258,11 +246,7 @@ pub(super) fn sharpen(
     let failed = failed.fold(seen.failed, f64::min);
     let longest = long.longest_that_held(f64::INFINITY).unwrap_or(limit);
     // If longer runs fail at steps at which shorter ones held, both set the interval.
-    let held = if failed * SHARP_TEST_RATIO > limit {
-        longest
-    } else {
-        longest.max(limit)
-    };
+    let held = if failed * SHARP_TEST_RATIO > limit { longest } else { longest.max(limit) };
     Ok(Observation { held, failed, runs })
 }
 
@@ -473,10 +457,7 @@ mod tests {
     fn a_sharp_limit_is_found() {
         for sharp in [true, false] {
             let seen = search(&[], sharp, u32::MAX);
-            assert!(
-                seen.is_sharp() && (0.058..0.06).contains(&seen.held),
-                "{seen:?}"
-            );
+            assert!(seen.is_sharp() && (0.058..0.06).contains(&seen.held), "{seen:?}");
         }
     }
 
@@ -485,10 +466,7 @@ mod tests {
         let narrow = [[0.0305, 0.0325], [0.02, 0.021]];
         for (fail, sharp) in [(&narrow[..], false), (&[[0.02, 0.045]], true)] {
             let seen = search(fail, sharp, u32::MAX);
-            assert!(
-                seen.held > 0.058 && (0.02..0.021).contains(&seen.failed),
-                "{seen:?}"
-            );
+            assert!(seen.held > 0.058 && (0.02..0.021).contains(&seen.failed), "{seen:?}");
         }
     }
 

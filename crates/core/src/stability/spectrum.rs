@@ -37,9 +37,7 @@ pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
     let mut modes = match linearized.filter(|m| !(small && is_constrained(m))) {
         Some(mechanics) => {
             let (x, _) = y.split_at(y.len() / 2);
-            let Undamped {
-                mut modes, mixing, ..
-            } = of_mechanics(mechanics, t, x, MAX_PRODUCTS);
+            let Undamped { mut modes, mixing, .. } = of_mechanics(mechanics, t, x, MAX_PRODUCTS);
             if mixing > Mixing::None {
                 let pencil = Pencil::of(mechanics, t, x, MAX_DENSE_LENGTH / 2);
                 match pencil.and_then(|pencil| pencil.modes(&modes)) {
@@ -73,11 +71,7 @@ pub(super) fn shapes(mechanics: &dyn Linearized, t: f64, x: &[f64]) -> Undamped 
 
 /// Returns the modes around x by Lanczos's method with at most `products` products.
 fn of_mechanics(mechanics: &dyn Linearized, t: f64, x: &[f64], products: usize) -> Undamped {
-    let mut found = Undamped {
-        modes: vec![],
-        shapes: vec![],
-        mixing: Mixing::None,
-    };
+    let mut found = Undamped { modes: vec![], shapes: vec![], mixing: Mixing::None };
     let mut stiffness = Normalised::new(mechanics, t, x);
     let mut basis = vec![stiffness.any_shape()];
     if dot(&basis[0], &basis[0]) == 0.0 {
@@ -271,12 +265,7 @@ impl Pencil {
         };
         let (stiffness, damping) = (matrix(false), matrix(true));
         let finite = stiffness.iter().chain(&damping).all(|a| a.is_finite());
-        finite.then_some(Self {
-            stiffness,
-            damping,
-            unknowns,
-            length: x.len(),
-        })
+        finite.then_some(Self { stiffness, damping, unknowns, length: x.len() })
     }
 
     /// Returns the modes, one for each real eigenvalue and each conjugate pair, fastest first.
@@ -288,16 +277,12 @@ impl Pencil {
         let w = self.stiffness.amax().sqrt().max(self.damping.amax());
         let mut matrix = DMatrix::zeros(2 * n, 2 * n);
         matrix.view_mut((0, n), (n, n)).fill_diagonal(w);
-        matrix
-            .view_mut((n, 0), (n, n))
-            .copy_from(&(&self.stiffness / -w));
+        matrix.view_mut((n, 0), (n, n)).copy_from(&(&self.stiffness / -w));
         matrix.view_mut((n, n), (n, n)).copy_from(&-&self.damping);
         let found = eigenvalues(&matrix);
         let share = |stiffness: f64| {
             let distance = |mode: &Mode| (mode.stiffness - stiffness).abs();
-            let nearest = undamped
-                .iter()
-                .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let nearest = undamped.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
             nearest.map_or(0.0, |m| m.damping / (m.drag + m.damping).max(1e-300))
         };
         let reads_velocity = undamped.iter().any(|mode| mode.reads_velocity);
@@ -310,12 +295,7 @@ impl Pencil {
             .map(|[re, im]| {
                 let mode = Mode::of_eigenvalue(re, im);
                 let damping = share(mode.stiffness) * mode.drag;
-                Mode {
-                    drag: mode.drag - damping,
-                    damping,
-                    reads_velocity,
-                    ..mode
-                }
+                Mode { drag: mode.drag - damping, damping, reads_velocity, ..mode }
             })
             .collect();
         sort(&mut modes);

@@ -70,12 +70,7 @@ fn race(
     let (Some(explicit), Some(implicit)) = (of(find("dop853")), of(radau)) else {
         return Ok(Some(Won::Explicit));
     };
-    let begin = |adaptive: Adaptive| Racer {
-        adaptive,
-        t: 0.0,
-        y: scene.state.clone(),
-        work: 0.0,
-    };
+    let begin = |adaptive: Adaptive| Racer { adaptive, t: 0.0, y: scene.state.clone(), work: 0.0 };
     let mut racers = [explicit, implicit].map(begin);
     loop {
         if !go_on() {
@@ -124,9 +119,7 @@ impl Racer {
     /// Takes a step, and adds its work. Returns whether it ends at the time `until` (s).
     fn step(&mut self, scene: &Scene, until: f64, work: &mut Work) -> Result<bool, Error> {
         let system = scene.model.system();
-        let taken = self
-            .adaptive
-            .advance(system, self.t, until - self.t, &mut self.y)?;
+        let taken = self.adaptive.advance(system, self.t, until - self.t, &mut self.y)?;
         self.t += taken.h;
         self.work += taken.work.total();
         *work += taken.work;

@@ -64,11 +64,7 @@ pub fn described(text: &str) -> Scene {
 }
 
 pub fn scene_with_grid(name: &str, rows: usize, cols: usize) -> Scene {
-    a3_scenes::find(name)
-        .unwrap()
-        .build(Some(Grid::new(rows, cols).unwrap()))
-        .unwrap()
-        .scene
+    a3_scenes::find(name).unwrap().build(Some(Grid::new(rows, cols).unwrap())).unwrap().scene
 }
 
 /// Run of a built-in scene: in steps of `value` (s), or to the tolerance `value` with an adaptive
@@ -134,13 +130,7 @@ pub fn errors(scene: &Scene, name: &str, control: Control, reference: &Reference
 
 /// Largest magnitude of a number in y; infinite if one of them is NaN.
 pub fn size(y: &[f64]) -> f64 {
-    y.iter().fold(0.0, |m: f64, y| {
-        if y.is_nan() {
-            f64::INFINITY
-        } else {
-            m.max(y.abs())
-        }
-    })
+    y.iter().fold(0.0, |m: f64, y| if y.is_nan() { f64::INFINITY } else { m.max(y.abs()) })
 }
 
 /// Largest difference between two states.

@@ -36,9 +36,7 @@ fn of_cells(across: usize) -> f64 {
     let mut y = [bar.moved(|p| p), vec![0.0; 3 * n]].concat();
     let mut implicit = method("implicit").integrator(&bar.network).unwrap();
     implicit.step(&bar.network, 0.0, 1e4, &mut y).unwrap();
-    let tip = (0..n)
-        .filter(|i| bar.rest[*i].x == SIZE[0])
-        .collect::<Vec<_>>();
+    let tip = (0..n).filter(|i| bar.rest[*i].x == SIZE[0]).collect::<Vec<_>>();
     let fallen = |i: &usize| bar.rest[*i].y - y[n + i];
     let mean = tip.iter().map(fallen).sum::<f64>() / tip.len() as f64;
     mean / deflection(material.young, material.poisson, gravity)

@@ -9,14 +9,7 @@ use crate::common::method;
 /// Determinants of the deformation gradients of a cube that is pinned at one face, with all other
 /// particles mirrored at first.
 fn volumes_after(model: Hyperelastic, name: &str, step: f64) -> Vec<f64> {
-    let mut bar = Bar::new(
-        [2, 2, 2],
-        [0.2; 3],
-        Material {
-            damping: 0.005,
-            ..rubber(model)
-        },
-    );
+    let mut bar = Bar::new([2, 2, 2], [0.2; 3], Material { damping: 0.005, ..rubber(model) });
     let x = bar.moved(|p| Vector3::new(-p.x, p.y, p.z));
     for i in 0..bar.rest.len() {
         if bar.rest[i].x == 0.0 {

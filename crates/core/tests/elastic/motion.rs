@@ -13,14 +13,8 @@ use crate::common::{distance, integrate, method};
 fn a_bar_swings_as_slowly_as_it_is_long() {
     for model in MODELS {
         let length = 2.0;
-        let mut bar = Bar::new(
-            [40, 1, 1],
-            [length, 0.05, 0.05],
-            Material {
-                poisson: 0.0,
-                ..rubber(model)
-            },
-        );
+        let mut bar =
+            Bar::new([40, 1, 1], [length, 0.05, 0.05], Material { poisson: 0.0, ..rubber(model) });
         let n = bar.rest.len();
         for i in (0..n).filter(|i| bar.rest[*i].x == 0.0).collect::<Vec<_>>() {
             bar.network.pin(i, Path::Still(bar.rest[i])).unwrap();
@@ -28,9 +22,7 @@ fn a_bar_swings_as_slowly_as_it_is_long() {
         // The shape of that mode, and a small amplitude.
         let quarter = std::f64::consts::FRAC_PI_2 / length;
         let x = bar.moved(|p| p + Vector3::x() * 1e-5 * (quarter * p.x).sin());
-        let tip = (0..n)
-            .filter(|i| bar.rest[*i].x == length)
-            .collect::<Vec<_>>();
+        let tip = (0..n).filter(|i| bar.rest[*i].x == length).collect::<Vec<_>>();
         let expected = (1e5 / DENSITY).sqrt() / (4.0 * length);
         let state = [x, vec![0.0; 3 * n]].concat();
         let scene = Scene::new("bar", Model::Network(Box::new(bar.network)), state);
@@ -49,10 +41,7 @@ fn a_bar_swings_as_slowly_as_it_is_long() {
             before = now;
         }
         let frequency = 2.0 / (crossings[4] - crossings[0]);
-        assert!(
-            (frequency / expected - 1.0).abs() < 0.01,
-            "{model:?}: {frequency} {expected}"
-        );
+        assert!((frequency / expected - 1.0).abs() < 0.01, "{model:?}: {frequency} {expected}");
     }
 }
 
@@ -60,15 +49,9 @@ fn swinging(damping: f64) -> (Bar, Vec<f64>) {
     let mut bar = Bar::new(
         [3, 1, 1],
         [0.6, 0.2, 0.2],
-        Material {
-            damping,
-            ..rubber(Hyperelastic::NeoHookean)
-        },
+        Material { damping, ..rubber(Hyperelastic::NeoHookean) },
     );
-    for i in (0..bar.rest.len())
-        .filter(|i| bar.rest[*i].x == 0.0)
-        .collect::<Vec<_>>()
-    {
+    for i in (0..bar.rest.len()).filter(|i| bar.rest[*i].x == 0.0).collect::<Vec<_>>() {
         bar.network.pin(i, Path::Still(bar.rest[i])).unwrap();
     }
     bar.network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
@@ -91,18 +74,11 @@ fn methods_keep_their_orders() {
         for m in METHODS.iter().filter(serving) {
             let steps = if m.order == 1 { 512 } else { 64 };
             let error = |steps: u64| {
-                distance(
-                    &integrate(&bar.network, m, &y, end / steps as f64, steps),
-                    &exact,
-                )
+                distance(&integrate(&bar.network, m, &y, end / steps as f64, steps), &exact)
             };
             let order = (error(steps) / error(2 * steps)).log2();
             let expected = f64::from(m.order);
-            assert!(
-                (order - expected).abs() < 0.25,
-                "{} {damping}: {order}",
-                m.name
-            );
+            assert!((order - expected).abs() < 0.25, "{} {damping}: {order}", m.name);
             count += 1;
         }
         assert!(count >= 10, "{count}");

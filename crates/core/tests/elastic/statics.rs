@@ -50,14 +50,7 @@ fn whole_energy(bar: &Bar, x: &[f64]) -> f64 {
 fn forces_are_those_of_the_energy() {
     for model in MODELS {
         for poisson in [-0.4, 0.0, 0.3, 0.45] {
-            let bar = Bar::new(
-                [2, 1, 2],
-                [1.0, 0.6, 0.8],
-                Material {
-                    poisson,
-                    ..rubber(model)
-                },
-            );
+            let bar = Bar::new([2, 1, 2], [1.0, 0.6, 0.8], Material { poisson, ..rubber(model) });
             // Some of the tetrahedra are inside out.
             for by in [0.05, 0.6] {
                 let x = shaken(&bar.moved(|p| p), by, 3);
@@ -92,12 +85,7 @@ fn an_even_deformation_is_in_equilibrium_inside() {
         let mut bar = Bar::new([4, 4, 4], [1.0; 3], rubber(model));
         let noise = noise(3 * bar.rest.len(), 5);
         let is_inside = |p: &Vector3<f64>| p.iter().all(|x| *x > 0.01 && *x < 0.99);
-        for (i, p) in bar
-            .rest
-            .iter_mut()
-            .enumerate()
-            .filter(|(_, p)| is_inside(p))
-        {
+        for (i, p) in bar.rest.iter_mut().enumerate().filter(|(_, p)| is_inside(p)) {
             *p += 0.04 * Vector3::from_fn(|axis, _| noise[3 * i + axis]);
         }
         let solid = Solid::new(0, &bar.tetrahedra, &bar.rest, bar.material).unwrap();
@@ -123,10 +111,7 @@ fn uniaxial(material: &Material, length: f64) -> (f64, f64) {
     let Material { young, poisson, .. } = *material;
     let strain = 0.5 * (length * length - 1.0);
     if material.model == Hyperelastic::StVenantKirchhoff {
-        return (
-            (1.0 - 2.0 * poisson * strain).sqrt(),
-            young * strain * length,
-        );
+        return ((1.0 - 2.0 * poisson * strain).sqrt(), young * strain * length);
     }
     let [lambda, mu] = material.lame();
     let (m, l) = (4.0 / 3.0 * mu, lambda + 5.0 / 6.0 * mu);
@@ -181,89 +166,35 @@ fn a_bar_is_stretched_as_its_law_says() {
 
 #[test]
 fn what_is_no_solid_is_refused_by_name() {
-    let rest = [
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, 0.0, 1.0],
-        [0.5, 0.5, 0.0],
-    ];
+    let rest =
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.5, 0.0]];
     let rest = rest.map(Vector3::from);
     let of = |tetrahedra: &[[u32; 4]], material| {
-        Solid::new(0, tetrahedra, &rest, material)
-            .map(|_| ())
-            .unwrap_err()
-            .to_string()
+        Solid::new(0, tetrahedra, &rest, material).map(|_| ()).unwrap_err().to_string()
     };
     let good = rubber(Hyperelastic::NeoHookean);
     for (corners, expected) in [
         ([0, 2, 1, 3], "tetrahedron 1 is inside out"),
         ([0, 1, 2, 4], "tetrahedron 1 is flat"),
         ([0, 1, 1, 3], "tetrahedron 1 is flat"),
-        (
-            [0, 1, 2, 5],
-            "tetrahedron 1 has corner 5, but the particles are numbered 0 to 4",
-        ),
+        ([0, 1, 2, 5], "tetrahedron 1 has corner 5, but the particles are numbered 0 to 4"),
     ] {
         let why = of(&[[0, 1, 2, 3], corners], good);
         assert!(why.contains(expected), "{why}");
     }
     for (bad, expected) in [
-        (
-            Material {
-                poisson: 0.5,
-                ..good
-            },
-            "Poisson's ratio must be above -1",
-        ),
-        (
-            Material {
-                poisson: -1.0,
-                ..good
-            },
-            "Poisson's ratio must be above -1",
-        ),
-        (
-            Material {
-                poisson: f64::NAN,
-                ..good
-            },
-            "Poisson's ratio must be above -1",
-        ),
+        (Material { poisson: 0.5, ..good }, "Poisson's ratio must be above -1"),
+        (Material { poisson: -1.0, ..good }, "Poisson's ratio must be above -1"),
+        (Material { poisson: f64::NAN, ..good }, "Poisson's ratio must be above -1"),
         (Material { young: 0.0, ..good }, "Young's modulus must be"),
-        (
-            Material {
-                young: f64::INFINITY,
-                ..good
-            },
-            "Young's modulus must be",
-        ),
-        (
-            Material {
-                damping: -1.0,
-                ..good
-            },
-            "the damping must be",
-        ),
-        (
-            Material {
-                young: 1e308,
-                poisson: 0.4999,
-                ..good
-            },
-            "beyond all numbers",
-        ),
+        (Material { young: f64::INFINITY, ..good }, "Young's modulus must be"),
+        (Material { damping: -1.0, ..good }, "the damping must be"),
+        (Material { young: 1e308, poisson: 0.4999, ..good }, "beyond all numbers"),
     ] {
         let why = of(&[[0, 1, 2, 3]], bad);
         assert!(why.contains(expected), "{why}");
     }
     let solid = Solid::new(2, &[[0, 1, 2, 3]], &rest, good).unwrap();
     let mut network = a3_core::Network::new(vec![1.0; 5]).unwrap();
-    assert!(
-        network
-            .add(solid)
-            .unwrap_err()
-            .to_string()
-            .contains("there is no particle 5")
-    );
+    assert!(network.add(solid).unwrap_err().to_string().contains("there is no particle 5"));
 }

@@ -73,23 +73,9 @@ fn a_particle_leaves_a_ball_where_the_equation_of_its_angle_says() {
         assert!(off < most, "{tolerance}: {off}");
     }
     for shape in [sphere, capsule] {
-        let smooth = [
-            1.202_006_61,
-            -0.211_990_12,
-            0.0,
-            1.666_191_07,
-            -4.550_272_69,
-            0.0,
-        ];
+        let smooth = [1.202_006_61, -0.211_990_12, 0.0, 1.666_191_07, -4.550_272_69, 0.0];
         ends_at(&scene(10.0, 0.0, shape), 1.0, smooth);
-        let rough = [
-            1.571_934_53,
-            -2.087_659_74,
-            0.0,
-            1.323_435_09,
-            -7.468_612_89,
-            0.0,
-        ];
+        let rough = [1.571_934_53, -2.087_659_74, 0.0, 1.323_435_09, -7.468_612_89, 0.0];
         ends_at(&scene(30.0, 0.1, shape), 1.0, rough);
     }
 }
@@ -113,14 +99,7 @@ fn a_turntable_carries_a_particle_or_throws_it_off() {
     let (sin, cos) = 2.0_f64.sin_cos();
     let round = [0.3 * cos, 0.1, -0.3 * sin, -0.3 * sin, 0.0, -0.3 * cos];
     ends_at(&scene(0.8), 2.0, round);
-    let out = [
-        -0.063_599_47,
-        0.1,
-        -0.480_285_42,
-        -0.336_688_75,
-        0.0,
-        -0.127_240_01,
-    ];
+    let out = [-0.063_599_47, 0.1, -0.480_285_42, -0.336_688_75, 0.0, -0.127_240_01];
     ends_at(&scene(0.02), 2.0, out);
 }
 
@@ -147,18 +126,10 @@ fn a_swinging_box_throws_a_particle_and_catches_it() {
     ];
     ends_at(&scene, until, [0.3, fallen[0], 0.0, 0.0, fallen[1], 0.0]);
     let carried = 0.6 * thrown;
-    ends_at(
-        &scene,
-        carried,
-        [0.3, height(carried), 0.0, 0.0, speed(carried), 0.0],
-    );
+    ends_at(&scene, carried, [0.3, height(carried), 0.0, 0.0, speed(carried), 0.0]);
     // Caught before the box is at its lowest, it rises with it again.
     let again = (std::f64::consts::TAU - 0.5) / rate;
-    ends_at(
-        &scene,
-        again,
-        [0.3, height(again), 0.0, 0.0, speed(again), 0.0],
-    );
+    ends_at(&scene, again, [0.3, height(again), 0.0, 0.0, speed(again), 0.0]);
 }
 
 /// A tilted capsule that turns about its axis catches a particle, which slides until it sticks, is
@@ -174,14 +145,8 @@ fn a_slide_begins_in_the_direction_in_which_a_particle_is_driven() {
         radius = 0.2
         friction = 0.4
         turn = { axis = [0, 0.0499376, 0.9987523], rate = 2 }";
-    let right = [
-        -0.168_333_85,
-        0.158_884_63,
-        0.014_886_48,
-        -0.594_038_87,
-        -0.923_593_48,
-        -0.005_153_28,
-    ];
+    let right =
+        [-0.168_333_85, 0.158_884_63, 0.014_886_48, -0.594_038_87, -0.923_593_48, -0.005_153_28];
     for name in ["dop853", "verner65", "dopri5"] {
         for (tolerance, most) in [(1e-6, 2e-5), (1e-9, 2e-6)] {
             let state = end(scene, name, tolerance, 0.6);

@@ -25,10 +25,7 @@ const CASES: [Case; 3] = [
             masses = [0.2, 0.3]
             springs = [[0, 1, 81, 0.291, 0]]",
         until: 1.0,
-        end: [
-            [0.065_898_641_799_19, 0.0, 0.0],
-            [0.351_762_598_850_57, 0.023_675_317_409_09, 0.0],
-        ],
+        end: [[0.065_898_641_799_19, 0.0, 0.0], [0.351_762_598_850_57, 0.023_675_317_409_09, 0.0]],
     },
     Case {
         scene: "gravity = [0, -9.81, 0]
@@ -80,11 +77,7 @@ fn no_rebound_is_too_short_to_be_located() {
         for name in ["dop853", "verner65", "dopri5", "rkf45"] {
             for (tolerance, most) in [(1e-6, 2e-5), (1e-9, 1e-8), (1e-12, 2e-11)] {
                 let error = case.error_of(name, Control::Tolerance(tolerance));
-                assert!(
-                    error < most,
-                    "{name} {tolerance}: {error:e}\n{}",
-                    case.scene
-                );
+                assert!(error < most, "{name} {tolerance}: {error:e}\n{}", case.scene);
             }
         }
     }
@@ -104,21 +97,13 @@ fn references_of_rebounds_know_their_errors() {
         assert!(floor < 1e-10, "{floor:e}\n{}", case.scene);
         assert!(error < floor + 1e-13, "{error:e} {floor:e}\n{}", case.scene);
         let methods = ["dop853", "verner65", "rkf45"].map(method);
-        let demand = Demand {
-            metric: Metric::Position,
-            error: 1e-6,
-            timed: false,
-        };
+        let demand = Demand { metric: Metric::Position, error: 1e-6, timed: false };
         let found = choose_among(&methods, &scene, &reference, demand, &go_on, |_| {});
         let found = found.unwrap().unwrap();
         assert!(!found.is_empty());
         for choice in found {
             let error = case.error_of(choice.method.name, choice.control);
-            assert!(
-                error <= 3f64.sqrt() * demand.error,
-                "{} {error:e}",
-                choice.method.name
-            );
+            assert!(error <= 3f64.sqrt() * demand.error, "{} {error:e}", choice.method.name);
         }
     }
 }

@@ -29,13 +29,7 @@ fn frames_change_no_bit() {
             for k in 1..=29 {
                 seen.advance_to(end * f64::from(k) / 29.0).unwrap();
             }
-            assert_eq!(
-                plain.steps(),
-                seen.steps(),
-                "{} {}",
-                entry.name,
-                method.name
-            );
+            assert_eq!(plain.steps(), seen.steps(), "{} {}", entry.name, method.name);
             let same = plain.state() == seen.state();
             assert!(same, "{} by {}", entry.name, method.name);
         }

@@ -165,12 +165,9 @@ fn a_rod_pulls_a_weight_over_a_rough_floor() {
 /// is that by implicit midpoint and TR-BDF2 at small steps, and by a model that shares no code.
 #[test]
 fn a_double_pendulum_swings_from_its_first_moment() {
-    for (name, value) in [
-        ("rk4", 1e-3),
-        ("verner65", 1e-9),
-        ("dop853", 1e-8),
-        ("implicit-midpoint", 1e-3),
-    ] {
+    for (name, value) in
+        [("rk4", 1e-3), ("verner65", 1e-9), ("dop853", 1e-8), ("implicit-midpoint", 1e-3)]
+    {
         let mut run = simulation("double-pendulum", name, value);
         run.set_swinging(true);
         run.advance_to(1.0).unwrap();
@@ -186,15 +183,8 @@ fn a_pendulum_stands_on_a_pivot_that_shakes() {
                 mass = 1\npin = [{ particles = [0], sine = { amplitude = [0, 0.1, 0], rate = 60 } }]\n\
                 [[constraint]]\nrod = [0, 1]";
     let scene = described(text);
-    let ends = [
-        ("rk4", 1e-3),
-        ("verner65", 1e-8),
-        ("implicit-midpoint", 5e-4),
-    ];
+    let ends = [("rk4", 1e-3), ("verner65", 1e-8), ("implicit-midpoint", 5e-4)];
     let ends = ends.map(|of| run(&scene, of, 1.0).position(1));
-    assert!(
-        ends.iter().all(|end| (end - ends[0]).norm() < 2e-3),
-        "{ends:?}"
-    );
+    assert!(ends.iter().all(|end| (end - ends[0]).norm() < 2e-3), "{ends:?}");
     assert!(ends[0].y > 0.8);
 }

@@ -28,11 +28,7 @@ fn a_rest_lets_no_pulse_pass() {
     let response = |t: f64| {
         let (w, ramp) = (5.0, 2.0);
         let of = |t: f64| {
-            if t > 0.0 {
-                ramp * (t - f64::sin(w * t) / w)
-            } else {
-                0.0
-            }
+            if t > 0.0 { ramp * (t - f64::sin(w * t) / w) } else { 0.0 }
         };
         -1.4 + of(t - 20.0) - of(t - 20.05)
     };
@@ -64,12 +60,9 @@ fn tight_tolerances_are_met_where_a_pin_starts() {
         particles = [0]
         shift = { by = [0.3, 0, 0], start = 0.31, end = 0.67 }
     ";
-    let mut run = Simulation::new(
-        described(toml),
-        method("dop853"),
-        method("dop853").control(1e-13),
-    )
-    .unwrap();
+    let mut run =
+        Simulation::new(described(toml), method("dop853"), method("dop853").control(1e-13))
+            .unwrap();
     run.advance_to(1.0).unwrap();
     assert!(run.work().rejections < run.steps(), "{:?}", run.work());
     let loose = height(toml, "dop853", 1e-10, 1.0);

@@ -57,17 +57,8 @@ fn methods_keep_order_2_through_rebounds() {
 /// Exact positions, by an event-driven model of order 8 in Python.
 #[test]
 fn fixed_steps_converge_to_the_motion_of_a_model() {
-    let truth = [
-        0.103_185_228_409,
-        0.381_209_847_727,
-        0.005_851_999_910,
-        0.066_042_278_710,
-        0.0,
-        0.0,
-    ];
-    let error = apart(
-        &end(&scene(0.6, 0.0), "rk4", Control::Step(1.0 / 1600.0)),
-        &truth,
-    );
+    let truth =
+        [0.103_185_228_409, 0.381_209_847_727, 0.005_851_999_910, 0.066_042_278_710, 0.0, 0.0];
+    let error = apart(&end(&scene(0.6, 0.0), "rk4", Control::Step(1.0 / 1600.0)), &truth);
     assert!(error < 1e-8, "{error:e}");
 }

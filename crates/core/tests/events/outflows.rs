@@ -116,10 +116,7 @@ fn adaptive_methods_locate_what_leaves() {
             let apart = (0..n).map(|k| (state[k] - exact[k]).abs());
             apart.fold(0.0, f64::max)
         });
-        assert!(
-            errors[0] < 1e-4 && errors[1] < 0.02 * errors[0],
-            "{name}: {errors:?}"
-        );
+        assert!(errors[0] < 1e-4 && errors[1] < 0.02 * errors[0], "{name}: {errors:?}");
     }
 }
 
@@ -239,8 +236,5 @@ fn what_has_left_touches_nothing() {
         run.position(1)
     };
     let free = chain("outflow = [{ size = [0.4, 0.4, 0], at = [0, -0.45, 0] }]");
-    assert!(
-        (free - Vector3::new(-1.0, -0.3, 0.0)).norm() < 1e-9,
-        "{free}"
-    );
+    assert!((free - Vector3::new(-1.0, -0.3, 0.0)).norm() < 1e-9, "{free}");
 }

@@ -108,18 +108,11 @@ fn rebounds_have_their_closed_forms() {
             let found = Vector3::from_column_slice(&run.velocities());
             (run.position(0) - x).norm().max((found - v).norm())
         };
-        for method in METHODS
-            .iter()
-            .filter(|method| method.is_adaptive() && !method.plain_only())
-        {
+        for method in METHODS.iter().filter(|method| method.is_adaptive() && !method.plain_only()) {
             for k in 2..=9 {
                 // The distance at which a touch counts, and BDF's own errors.
                 let tolerance = 0.1f64.powi(k);
-                let most = if method.name == "bdf" {
-                    30.0 * tolerance
-                } else {
-                    1e-6
-                };
+                let most = if method.name == "bdf" { 30.0 * tolerance } else { 1e-6 };
                 let off = off(method.name, tolerance);
                 assert!(off < most, "{} {tolerance:e}: {off:e}\n{toml}", method.name);
             }
@@ -146,17 +139,9 @@ fn a_box_that_begins_to_rise_strikes_what_lies_on_it() {
             positions = [[0, 0.5, 0]]
             mass = 1"
         );
-        let fixed = [
-            ("rk4", 1e-3),
-            ("rk4", 7e-4),
-            ("verlet", 1e-2),
-            ("implicit", 1e-3),
-        ];
+        let fixed = [("rk4", 1e-3), ("rk4", 7e-4), ("verlet", 1e-2), ("implicit", 1e-3)];
         let fixed = fixed.map(|(name, step)| (name, Control::Step(step)));
-        for (name, control) in fixed
-            .into_iter()
-            .chain([("dopri5", Control::Tolerance(1e-6))])
-        {
+        for (name, control) in fixed.into_iter().chain([("dopri5", Control::Tolerance(1e-6))]) {
             let mut run = Simulation::new(described(&scene), method(name), control).unwrap();
             run.advance_to(0.51).unwrap();
             let falls = if restitution > 0.0 { 0.0981 } else { 0.0 };

@@ -46,11 +46,7 @@ fn fixed_steps_keep_their_orders() {
         if m.check_control(Control::Step(0.1)).is_err() || m.check(scene.model.system()).is_err() {
             continue;
         }
-        let steps = if m.order > 5 {
-            [12_u32, 24]
-        } else {
-            [150, 300]
-        };
+        let steps = if m.order > 5 { [12_u32, 24] } else { [150, 300] };
         let [coarse, fine] = steps.map(|count| {
             let step = Control::Step(1.5 / f64::from(count));
             let mut run = Simulation::new(scene.clone(), m, step).unwrap();
@@ -62,10 +58,7 @@ fn fixed_steps_keep_their_orders() {
         let name = m.name;
         let least = f64::from(m.order) - 0.6;
         let is_exact = fine < 1e-14;
-        assert!(
-            order > least || is_exact,
-            "{name}: {order}, {coarse:e}, {fine:e}"
-        );
+        assert!(order > least || is_exact, "{name}: {order}, {coarse:e}, {fine:e}");
         assert!(fine < 0.02, "{name}: {fine:e}");
         tried += 1;
     }
@@ -115,11 +108,7 @@ fn what_is_thrown_flies_on_a_parabola() {
         let s = t - 0.6;
         Vector3::new(0.8 + 2.0 * s, 0.4 + s - 5.0 * s * s, 0.0)
     };
-    for (name, value) in [
-        ("verlet", 0.07),
-        ("implicit-midpoint", 0.07),
-        ("dopri5", 1e-6),
-    ] {
+    for (name, value) in [("verlet", 0.07), ("implicit-midpoint", 0.07), ("dopri5", 1e-6)] {
         let Some(found) = integrators::find(name) else {
             continue;
         };
@@ -171,10 +160,7 @@ fn going_back_holds_again() {
             run.rewind(moment).unwrap();
             assert_eq!(pinned(&run, 1), *time < UNTIL, "{name} at {time}");
             run.advance_to(1.5).unwrap();
-            assert!(
-                (run.position(1).x - end[1]).abs() < 0.03,
-                "{name} from {time}"
-            );
+            assert!((run.position(1).x - end[1]).abs() < 0.03, "{name} from {time}");
             let mut other = run_of(&scene, method(name), value);
             other.restore(checkpoint).unwrap();
             assert_eq!(pinned(&other, 1), *time < UNTIL, "{name} at {time}");

@@ -48,10 +48,7 @@ fn friction_stops_an_oscillator_where_its_closed_form_says() {
             assert!(error < most, "{name} {tolerance}: {error}");
             let x = end(&scene, name, control, half_period);
             let error = (x[1] - 1.0 + first - 2.0 * held).abs();
-            assert!(
-                error < most,
-                "{name} {tolerance}, at the first turn: {error}"
-            );
+            assert!(error < most, "{name} {tolerance}, at the first turn: {error}");
         }
     }
 }
@@ -61,10 +58,7 @@ fn friction_stops_an_oscillator_where_its_closed_form_says() {
 /// same motion.
 #[test]
 fn what_slides_and_sticks_converges_to_one_motion() {
-    for obstacle in [
-        "",
-        "[[box]]\ncenter = [0, 0, 0]\nsize = [1.2, 0.2, 2]\nfriction = 0.2\n",
-    ] {
+    for obstacle in ["", "[[box]]\ncenter = [0, 0, 0]\nsize = [1.2, 0.2, 2]\nfriction = 0.2\n"] {
         let scene = format!(
             "gravity = [0, -9.81, 0]
             drag = 0.01
@@ -83,17 +77,11 @@ fn what_slides_and_sticks_converges_to_one_motion() {
             ("verner65", 1e-9, 1e-6),
             ("rkf45", 1e-9, 1e-6),
         ] {
-            let error = apart(
-                &truth,
-                &end(&scene, name, Control::Tolerance(tolerance), 1.5),
-            );
+            let error = apart(&truth, &end(&scene, name, Control::Tolerance(tolerance), 1.5));
             assert!(error < most, "{name} {tolerance}: {error}");
         }
         let steps = [5e-4, 1.25e-4];
         let errors = steps.map(|h| apart(&truth, &end(&scene, "rk4", Control::Step(h), 1.5)));
-        assert!(
-            errors[0] < 1e-3 && errors[1] < 0.7 * errors[0],
-            "{errors:?}"
-        );
+        assert!(errors[0] < 1e-3 && errors[1] < 0.7 * errors[0], "{errors:?}");
     }
 }

@@ -52,11 +52,9 @@ fn a_fall_ends_in_a_swing_in_the_order_of_the_method() {
     assert!(slack.is_none());
     let end = Vector3::new(angle.sin(), -angle.cos(), 0.0);
     let error = |name, value| (run(&scene, name, value, until).position(1) - end).norm();
-    for (name, tolerance, bound) in [
-        ("dop853", 1e-10, 1e-8),
-        ("dopri5", 1e-8, 1e-6),
-        ("bdf", 1e-8, 1e-5),
-    ] {
+    for (name, tolerance, bound) in
+        [("dop853", 1e-10, 1e-8), ("dopri5", 1e-8, 1e-6), ("bdf", 1e-8, 1e-5)]
+    {
         let error = error(name, tolerance);
         assert!(error < bound, "{name}: {error:e}");
     }
@@ -89,11 +87,9 @@ fn a_rebound_has_the_restitution_of_the_rope() {
         let after = across - out * (restitution * 0.8 * speed);
         let down = Vector3::new(0.0, -G, 0.0);
         let end = out + after * rest + down * (0.5 * rest * rest);
-        for (name, value, bound) in [
-            ("dop853", 1e-9, 1e-8),
-            ("verlet", 1e-3, 1e-5),
-            ("tr-bdf2", 1e-3, 1e-5),
-        ] {
+        for (name, value, bound) in
+            [("dop853", 1e-9, 1e-8), ("verlet", 1e-3, 1e-5), ("tr-bdf2", 1e-3, 1e-5)]
+        {
             let run = run(&scene, name, value, tight + rest);
             let error = (run.position(1) - end).norm();
             assert!(error < bound, "{name}: {error:e}");
@@ -178,10 +174,7 @@ fn ropes_in_a_row_tighten_one_after_another() {
     for (name, value) in [("dop853", 1e-9), ("verlet", 0.01), ("euler", 0.01)] {
         let run = run(&scene, name, value, 3.0);
         let speeds = [9, 10, 11].map(|k| run.state()[k]);
-        assert!(
-            speeds.iter().all(|v| (v - 1.0).abs() < 1e-9),
-            "{name}: {speeds:?}"
-        );
+        assert!(speeds.iter().all(|v| (v - 1.0).abs() < 1e-9), "{name}: {speeds:?}");
         assert!((run.position(2).x - run.position(0).x - 2.0).abs() < 1e-6);
     }
 }
@@ -189,12 +182,7 @@ fn ropes_in_a_row_tighten_one_after_another() {
 #[test]
 fn a_run_on_a_rope_continues_from_a_checkpoint_bit_for_bit() {
     let scene = on_rope([0.6, 0.0, 0.1], [0.0; 3], 0.3);
-    for (name, value) in [
-        ("dopri5", 1e-6),
-        ("verlet", 0.01),
-        ("bdf", 1e-4),
-        ("tr-bdf2", 0.01),
-    ] {
+    for (name, value) in [("dopri5", 1e-6), ("verlet", 0.01), ("bdf", 1e-4), ("tr-bdf2", 0.01)] {
         for cut in [0.2, 0.41, 1.0] {
             let mut whole = run(&scene, name, value, cut);
             let checkpoint = whole.checkpoint();
@@ -229,18 +217,12 @@ fn rebounds_between_two_ropes_end() {
         let x = run(&between(gap), name, value, until).position(2).x;
         assert!((x - expected).abs() < 1e-6, "{name}: {x} {expected}");
     }
-    for (gap, name, value) in [
-        (1e-7, "verlet", 0.01),
-        (1e-7, "rk4", 0.01),
-        (0.0, "verlet", 0.01),
-        (0.0, "dopri5", 1e-6),
-    ] {
+    for (gap, name, value) in
+        [(1e-7, "verlet", 0.01), (1e-7, "rk4", 0.01), (0.0, "verlet", 0.01), (0.0, "dopri5", 1e-6)]
+    {
         let run = run(&between(gap), name, value, 1.0);
         let (x, v) = (run.position(2).x, run.state()[11]);
-        assert!(
-            x.abs() < 1e-6 && v.abs() < 1e-6,
-            "{name} {gap}: {x:e} {v:e}"
-        );
+        assert!(x.abs() < 1e-6 && v.abs() < 1e-6, "{name} {gap}: {x:e} {v:e}");
     }
 }
 

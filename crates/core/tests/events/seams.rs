@@ -26,18 +26,8 @@ fn plate(n: usize) -> Mesh {
     };
     for i in 0..n {
         for j in 0..n {
-            side([
-                at(0, i, j),
-                at(0, i, j + 1),
-                at(0, i + 1, j + 1),
-                at(0, i + 1, j),
-            ]);
-            side([
-                at(1, i, j),
-                at(1, i + 1, j),
-                at(1, i + 1, j + 1),
-                at(1, i, j + 1),
-            ]);
+            side([at(0, i, j), at(0, i, j + 1), at(0, i + 1, j + 1), at(0, i + 1, j)]);
+            side([at(1, i, j), at(1, i + 1, j), at(1, i + 1, j + 1), at(1, i, j + 1)]);
         }
         side([at(0, i, 0), at(0, i + 1, 0), at(1, i + 1, 0), at(1, i, 0)]);
         side([at(0, i + 1, n), at(0, i, n), at(1, i, n), at(1, i + 1, n)]);
@@ -63,8 +53,7 @@ fn after(
     let cells = if obstacles.contains("fine") { 9 } else { 1 };
     let setup = description.build(None, &mut |_| Ok(plate(cells))).unwrap();
     let mut run = Simulation::new(setup.scene, method, control).unwrap();
-    run.advance_to(t)
-        .unwrap_or_else(|why| panic!("{}, {control:?}: {why}", method.name));
+    run.advance_to(t).unwrap_or_else(|why| panic!("{}, {control:?}: {why}", method.name));
     assert_eq!(run.gained(), None, "{}", method.name);
     run
 }
@@ -73,18 +62,9 @@ fn after(
 fn all() -> Vec<(&'static Method, Control)> {
     let mut all = vec![];
     for method in METHODS.iter().filter(|method| !method.plain_only()) {
-        let controls = [
-            Control::Step(2e-3),
-            Control::Tolerance(1e-3),
-            Control::Tolerance(1e-6),
-        ];
+        let controls = [Control::Step(2e-3), Control::Tolerance(1e-3), Control::Tolerance(1e-6)];
         let fits = |control: &Control| method.check_control(*control).is_ok();
-        all.extend(
-            controls
-                .into_iter()
-                .filter(fits)
-                .map(|control| (method, control)),
-        );
+        all.extend(controls.into_iter().filter(fits).map(|control| (method, control)));
     }
     all
 }
@@ -104,12 +84,7 @@ fn a_particle_glides_over_the_seam_of_level_boxes() {
     };
     for overlap in [0.0, 0.1] {
         for who in all() {
-            let run = after(
-                who,
-                &second(-overlap),
-                [[-0.6, 0.0, 0.05], [2.2, 0.0, 0.1]],
-                1.0,
-            );
+            let run = after(who, &second(-overlap), [[-0.6, 0.0, 0.05], [2.2, 0.0, 0.1]], 1.0);
             let (x, speed) = (run.position(0), run.state()[3]);
             let off = (x.x - 1.6).abs() + x.y.abs() + (speed - 2.2).abs();
             let name = who.0.name;
@@ -169,8 +144,7 @@ fn a_rod_slides_off_a_turning_mesh() {
         let setup = description.build(None, &mut |_| Ok(mesh.clone())).unwrap();
         let control = Control::Step(step);
         let mut run = Simulation::new(setup.scene, method(name), control).unwrap();
-        run.advance_to(0.8)
-            .unwrap_or_else(|why| panic!("{name}, {step}: {why}"));
+        run.advance_to(0.8).unwrap_or_else(|why| panic!("{name}, {step}: {why}"));
         let length = (run.position(1) - run.position(0)).norm();
         assert!((length - 0.0925_f64.sqrt()).abs() < 1e-4, "{length}");
     }
@@ -178,10 +152,7 @@ fn a_rod_slides_off_a_turning_mesh() {
 
 #[test]
 fn a_box_that_stands_on_something_stops_what_slides_along_it() {
-    let grounds = [
-        "[floor]\nheight = 0",
-        "[[box]]\ncenter = [0, -0.5, 0]\nsize = [8, 1, 8]",
-    ];
+    let grounds = ["[floor]\nheight = 0", "[[box]]\ncenter = [0, -0.5, 0]\nsize = [8, 1, 8]"];
     for ground in grounds {
         for (restitution, end) in [(0.0, 0.5), (0.5, -0.25)] {
             let scene = format!(

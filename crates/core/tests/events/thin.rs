@@ -34,11 +34,7 @@ fn a_cloth_rests_on_a_thin_table_by_every_solver() {
                 continue;
             }
             // Steps that are stable, but too long for the table.
-            let value = if method.is_adaptive() {
-                1e-3
-            } else {
-                1.0 / 240.0
-            };
+            let value = if method.is_adaptive() { 1e-3 } else { 1.0 / 240.0 };
             let mut run = Simulation::new(scene.clone(), method, method.control(value)).unwrap();
             run.advance_to(0.7).unwrap();
             assert!(run.lowest() > 0.5 - 1e-3, "{} {thick}", method.name);

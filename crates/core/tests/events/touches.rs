@@ -14,9 +14,7 @@ fn after(toml: &str, method: &'static Method, value: f64, until: f64) -> Simulat
 }
 
 fn adaptive() -> impl Iterator<Item = &'static Method> {
-    METHODS
-        .iter()
-        .filter(|method| method.is_adaptive() && !method.plain_only())
+    METHODS.iter().filter(|method| method.is_adaptive() && !method.plain_only())
 }
 
 const SLOPE: &str = "
@@ -90,17 +88,10 @@ fn a_sphere_that_passes_after_a_rest_throws_what_hangs_there() {
         shift = { by = [10, 0, 0], start = 10, end = 11 }
     ";
     let accurate = after(toml, method("dop853"), 1e-10, 12.0).position(1);
-    assert!(
-        (accurate - Vector3::new(0.0, 0.6, 0.0)).norm() > 0.5,
-        "{accurate}"
-    );
+    assert!((accurate - Vector3::new(0.0, 0.6, 0.0)).norm() > 0.5, "{accurate}");
     for method in adaptive().filter(|method| method.check(described(toml).model.system()).is_ok()) {
         let end = after(toml, method, 1e-5, 12.0).position(1);
-        assert!(
-            (end - accurate).norm() < 5e-3,
-            "{}: {end} {accurate}",
-            method.name
-        );
+        assert!((end - accurate).norm() < 5e-3, "{}: {end} {accurate}", method.name);
     }
     let fixed = after(toml, method("rk4"), 5e-5, 12.0).position(1);
     assert!((fixed - accurate).norm() < 5e-3, "{fixed} {accurate}");
@@ -112,9 +103,7 @@ fn a_sphere_that_passes_after_a_rest_throws_what_hangs_there() {
 fn no_particle_passes_through_what_moves_small_and_fast() {
     let mut seed = 20_u64;
     let mut random = move |low: f64, high: f64| {
-        seed = seed
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         low + (high - low) * ((seed >> 11) as f64 / (1u64 << 53) as f64)
     };
     let mut touched = 0;
@@ -150,9 +139,7 @@ fn no_particle_passes_through_what_moves_small_and_fast() {
             run.take_steps(1).unwrap();
             let network = run.model().network().unwrap();
             let obstacle = &network.obstacles()[0];
-            let Shape::Box { half_extents, .. } = obstacle.shape else {
-                unreachable!()
-            };
+            let Shape::Box { half_extents, .. } = obstacle.shape else { unreachable!() };
             let d = run.position(0) - obstacle.path.at(run.time()).position;
             // Until it slides off the side of the plate.
             if d.x.abs() > half_extents.x - 1e-3 {

@@ -9,9 +9,7 @@ type Point = [i64; 3];
 
 /// All edges of triangles, once each.
 fn edges_of(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
-    let sides = triangles
-        .iter()
-        .flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
+    let sides = triangles.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
     let edges: BTreeSet<_> = sides.map(|[a, b]| [a.min(b), a.max(b)]).collect();
     edges.into_iter().collect()
 }
@@ -20,16 +18,12 @@ fn edges_of(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
 fn cloth(n: u32) -> Vec<[u32; 3]> {
     let corner = |k: u32| k / (n - 1) * n + k % (n - 1);
     let cells = (0..(n - 1) * (n - 1)).map(corner);
-    cells
-        .flat_map(|a| [[a, a + 1, a + n], [a + 1, a + n + 1, a + n]])
-        .collect()
+    cells.flat_map(|a| [[a, a + 1, a + n], [a + 1, a + n + 1, a + n]]).collect()
 }
 
 /// Column-major coordinates of points.
 fn columns(points: &[Point]) -> Vec<f64> {
-    (0..3)
-        .flat_map(|axis| points.iter().map(move |x| x[axis] as f64))
-        .collect()
+    (0..3).flat_map(|axis| points.iter().map(move |x| x[axis] as f64)).collect()
 }
 
 fn minus(a: Point, b: Point) -> Point {
@@ -50,24 +44,15 @@ fn meet(edge: &[Point], triangle: &[Point]) -> bool {
         .map(|(i, j)| minus(all[i], all[j]))
         .collect();
     let crosses = |first: &[Point]| -> Vec<Point> {
-        let with = |a: &Point| {
-            differences
-                .iter()
-                .map(|b| cross(*a, *b))
-                .collect::<Vec<_>>()
-        };
+        let with = |a: &Point| differences.iter().map(|b| cross(*a, *b)).collect::<Vec<_>>();
         first.iter().flat_map(with).collect()
     };
     let normals = crosses(&differences);
     let within = crosses(&normals);
-    !differences
-        .iter()
-        .chain(&normals)
-        .chain(&within)
-        .any(|axis| {
-            let along = |x: &Point| (0..3).map(|k| axis[k] * x[k]).sum::<i64>();
-            edge.iter().map(along).max() < triangle.iter().map(along).min()
-        })
+    !differences.iter().chain(&normals).chain(&within).any(|axis| {
+        let along = |x: &Point| (0..3).map(|k| axis[k] * x[k]).sum::<i64>();
+        edge.iter().map(along).max() < triangle.iter().map(along).min()
+    })
 }
 
 /// Small integers cover every degeneracy, large ones none.
@@ -77,9 +62,8 @@ fn what_is_found_among_random_triangles_is_what_whole_numbers_say() {
     for round in 0..60 {
         let range = [3, 5, 40][round % 3];
         let count = 3 + random.below(12);
-        let points: Vec<Point> = (0..count)
-            .map(|_| std::array::from_fn(|_| random.below(range) as i64))
-            .collect();
+        let points: Vec<Point> =
+            (0..count).map(|_| std::array::from_fn(|_| random.below(range) as i64)).collect();
         let mut corner = || random.below(count) as u32;
         let triangles: Vec<_> = (0..count).map(|_| [corner(), corner(), corner()]).collect();
         let edges: Vec<_> = (0..count).map(|_| [corner(), corner()]).collect();
@@ -95,10 +79,8 @@ fn what_is_found_among_random_triangles_is_what_whole_numbers_say() {
         }
         // The last points may also be passed separately.
         let split = random.below(count);
-        let others: Vec<_> = points[split..]
-            .iter()
-            .map(|x| Vector3::from(x.map(|x| x as f64)))
-            .collect();
+        let others: Vec<_> =
+            points[split..].iter().map(|x| Vector3::from(x.map(|x| x as f64))).collect();
         let found = crossings(&columns(&points[..split]), &others, &triangles, &edges);
         assert_eq!(found, expected, "round {round}");
     }
@@ -108,11 +90,7 @@ fn what_is_found_among_random_triangles_is_what_whole_numbers_say() {
 fn a_touch_counts_and_a_miss_by_a_rounding_does_not() {
     let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let count = |p: [f64; 3], q: [f64; 3]| {
-        let points: Vec<_> = triangle
-            .iter()
-            .chain([&p, &q])
-            .map(|x| Vector3::from(*x))
-            .collect();
+        let points: Vec<_> = triangle.iter().chain([&p, &q]).map(|x| Vector3::from(*x)).collect();
         crossings(&[], &points, &[[0, 1, 2]], &[[3, 4]]).len()
     };
     let least = 1e-30;
@@ -123,19 +101,13 @@ fn a_touch_counts_and_a_miss_by_a_rounding_does_not() {
     assert_eq!(count([0.0, 1.0, 1.0], [0.0, 1.0, 0.0]), 1);
     assert_eq!(count([0.3, 0.3, 1.0], [0.3, 0.3, 0.0]), 1);
     assert_eq!(count([0.3, 0.3, 1.0], [0.3, 0.3, least]), 0);
-    assert_eq!(
-        count([0.5, 0.5f64.next_up(), -1.0], [0.5, 0.5f64.next_up(), 1.0]),
-        0
-    );
+    assert_eq!(count([0.5, 0.5f64.next_up(), -1.0], [0.5, 0.5f64.next_up(), 1.0]), 0);
     // In the plane: inside, across, along a side, at a corner, and beside it.
     assert_eq!(count([0.2, 0.2, 0.0], [0.3, 0.4, 0.0]), 1);
     assert_eq!(count([-1.0, 0.2, 0.0], [2.0, 0.3, 0.0]), 1);
     assert_eq!(count([2.0, 0.0, 0.0], [0.5, 0.0, 0.0]), 1);
     assert_eq!(count([1.0, -1.0, 0.0], [1.0, 1.0, 0.0]), 1);
-    assert_eq!(
-        count([1.0f64.next_up(), -1.0, 0.0], [1.0f64.next_up(), 1.0, 0.0]),
-        0
-    );
+    assert_eq!(count([1.0f64.next_up(), -1.0, 0.0], [1.0f64.next_up(), 1.0, 0.0]), 0);
 }
 
 /// Cloth on y = 0, flat and folded in half onto itself along a line of points.
@@ -156,10 +128,7 @@ fn flat_cloth_has_no_crossing_and_folded_cloth_has() {
     let found = found(4);
     // The edge from the first point to the next lies on the mirror image of its own triangle.
     let edge = edges.iter().position(|e| *e == [0, 1]).unwrap();
-    let triangle = triangles
-        .iter()
-        .position(|t| *t == [N - 2, N - 1, 2 * N - 2])
-        .unwrap();
+    let triangle = triangles.iter().position(|t| *t == [N - 2, N - 1, 2 * N - 2]).unwrap();
     assert!(found.contains(&Crossing { edge, triangle }));
     assert!(found.is_sorted());
 }

@@ -108,10 +108,7 @@ fn distances_on_the_way_are_larger_than_the_gap_until_the_time_of_impact() {
             early += usize::from(left > 0.11 * gap + 1e-8);
         }
     }
-    assert!(
-        early * 8 < hits,
-        "{early} of {hits} are hit before they have to be"
-    );
+    assert!(early * 8 < hits, "{early} of {hits} are hit before they have to be");
 }
 
 /// The far end of a long primitive that turns about its near end moves by half its length: a
@@ -124,12 +121,9 @@ fn a_long_primitive_meets_what_is_near_its_slow_end_in_time() {
     let [a, b, c] = [25.0 - gap * gap / 4.0, -20.0, 4.0 - gap * gap];
     let exact = (-b - (b * b - 4.0 * a * c).sqrt()) / (2.0 * a);
     for length in [1e2, 1e5, 1e9] {
-        for (kind, beside) in [
-            (EdgeEdge, 0.0),
-            (EdgeEdge, 1.3),
-            (VertexTriangle, 0.0),
-            (VertexTriangle, 1.3),
-        ] {
+        for (kind, beside) in
+            [(EdgeEdge, 0.0), (EdgeEdge, 1.3), (VertexTriangle, 0.0), (VertexTriangle, 1.3)]
+        {
             let [p, q] = [0.0, 1.0].map(|y| Vector3::new(2.0, beside + y, -10.0));
             let far = Vector3::new(0.0, 0.0, -length);
             let from = match kind {
@@ -146,16 +140,10 @@ fn a_long_primitive_meets_what_is_near_its_slow_end_in_time() {
             }
             let tolerance = 1e-12 * length;
             let left = pair.distance(time.unwrap()) - gap;
-            assert!(
-                time.unwrap() <= exact + tolerance,
-                "{kind:?} {length:e}: {time:?}"
-            );
+            assert!(time.unwrap() <= exact + tolerance, "{kind:?} {length:e}: {time:?}");
             // When planes run out, the time is too early.
             let decided = kind == EdgeEdge || length < 1e9;
-            assert!(
-                !decided || left < 0.11 * gap + tolerance,
-                "{kind:?} {length:e}: {left}"
-            );
+            assert!(!decided || left < 0.11 * gap + tolerance, "{kind:?} {length:e}: {left}");
         }
     }
 }
@@ -213,10 +201,7 @@ fn what_begins_nearer_than_the_gap_is_held_only_if_it_approaches() {
 fn numbers_that_are_not_finite_are_a_hit() {
     for bad in [f64::NAN, f64::INFINITY] {
         for kind in [VertexTriangle, EdgeEdge, VertexFloor] {
-            assert_eq!(
-                time_of_impact(kind, &above(bad), &lifted([0.0; 4]), 0.0, 1e-3),
-                Some(0.0)
-            );
+            assert_eq!(time_of_impact(kind, &above(bad), &lifted([0.0; 4]), 0.0, 1e-3), Some(0.0));
             let moves = lifted([bad, 0.0, 0.0, 0.0]);
             let hit = time_of_impact(kind, &above(1.0), &moves, 0.0, 1e-3);
             assert_eq!(hit, Some(0.0));
@@ -232,39 +217,15 @@ fn handcrafted_cases_are_decided_as_in_the_benchmark() {
     let check = |kind: PairKind, hit: bool, from: [[f64; 3]; 4], to: [[f64; 3]; 4]| {
         let from = from.map(Vector3::from);
         let moves = std::array::from_fn(|i| Vector3::from(to[i]) - from[i]);
-        assert_eq!(
-            time_of_impact(kind, &from, &moves, 0.0, 0.0).is_some(),
-            hit,
-            "{kind:?} {to:?}"
-        );
+        assert_eq!(time_of_impact(kind, &from, &moves, 0.0, 0.0).is_some(), hit, "{kind:?} {to:?}");
     };
     let face = |y| [[-1.0, y, 1.0], [1.0, y, 1.0], [0.0, y, -1.0]];
     let with = |v: [f64; 3], [a, b, c]: [[f64; 3]; 3]| [v, a, b, c];
     let start = with([0.0, 1.0, 0.0], face(0.0));
-    check(
-        VertexTriangle,
-        false,
-        start,
-        with([0.0, 2.0, -e], face(-1.0)),
-    );
-    check(
-        VertexTriangle,
-        false,
-        start,
-        with([0.0, 2.0, -e], face(0.0)),
-    );
-    check(
-        VertexTriangle,
-        true,
-        start,
-        with([0.0, 0.5 + e, e], face(2.0)),
-    );
-    check(
-        VertexTriangle,
-        false,
-        start,
-        with([0.0, 0.5, -e], face(-1.0)),
-    );
+    check(VertexTriangle, false, start, with([0.0, 2.0, -e], face(-1.0)));
+    check(VertexTriangle, false, start, with([0.0, 2.0, -e], face(0.0)));
+    check(VertexTriangle, true, start, with([0.0, 0.5 + e, e], face(2.0)));
+    check(VertexTriangle, false, start, with([0.0, 0.5, -e], face(-1.0)));
     let edges = |y: f64, z: f64| {
         let x = -1.0 - e;
         [[-1.0, y, 0.0], [1.0, y, 0.0], [x, z, -1.0], [x, z, 1.0]]

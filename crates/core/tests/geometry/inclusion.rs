@@ -45,9 +45,7 @@ pub fn meet(
         let t = f64::from(k) / 64.0;
         closest(kind, &std::array::from_fn(|i| from[i].lerp(&to[i], t))).offset
     });
-    let normal = offsets
-        .min_by(|a, b| a.norm().total_cmp(&b.norm()))
-        .unwrap();
+    let normal = offsets.min_by(|a, b| a.norm().total_cmp(&b.norm())).unwrap();
     let across = Vector3::ith(normal.iamin(), 1.0);
     let turn = Rotation3::face_towards(&normal, &across);
     let seen = |points: &[Vector3<f64>; 4]| points.map(|x| turn.inverse() * x);

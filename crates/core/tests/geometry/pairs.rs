@@ -12,20 +12,16 @@ pub struct Pair {
 }
 
 /// Families of pairs.
-pub const FAMILIES: [&str; 8] = [
-    "general", "aimed", "grazing", "parallel", "coplanar", "sliver", "lattice", "still",
-];
+pub const FAMILIES: [&str; 8] =
+    ["general", "aimed", "grazing", "parallel", "coplanar", "sliver", "lattice", "still"];
 
 impl Pair {
     /// Pair of a family, with coordinates around 1 or, one time in eight, around 1000.
     pub fn random(family: &str, random: &mut Random) -> Self {
         let kind = [PairKind::VertexTriangle, PairKind::EdgeEdge][random.below(2)];
         let length = random.magnitude(-4.0, 0.5);
-        let mut pair = Self {
-            kind,
-            from: random.points(),
-            moves: random.points().map(|u| u * length),
-        };
+        let mut pair =
+            Self { kind, from: random.points(), moves: random.points().map(|u| u * length) };
         match family {
             "aimed" => pair.aim(false, random),
             "grazing" => pair.aim(true, random),
@@ -44,11 +40,7 @@ impl Pair {
                 let parts = random.below(3);
                 for i in 0..4 {
                     if parts == 0 || (i < kind.first()) == (parts == 1) {
-                        pair.moves[i] = if random.below(2) == 0 {
-                            rigid
-                        } else {
-                            Vector3::zeros()
-                        };
+                        pair.moves[i] = if random.below(2) == 0 { rigid } else { Vector3::zeros() };
                     }
                 }
             }

@@ -15,9 +15,7 @@ const GO_ON: &dyn Fn() -> bool = &|| true;
 
 fn within(scene: &Scene, until: f64, scope: Scope) -> Reference {
     let precision = Precision::FINEST;
-    Reference::new(scene, Frames::new(until), scope, precision, GO_ON)
-        .unwrap()
-        .unwrap()
+    Reference::new(scene, Frames::new(until), scope, precision, GO_ON).unwrap().unwrap()
 }
 
 fn modes(scene: &Scene) -> Vec<Mode> {
@@ -29,15 +27,9 @@ fn on_the_circle_the_error_is_the_known_one() {
     let circle = scene("simple");
     let reference = reference(&circle, 10.0);
     assert!(reference.floor.position < 1e-11, "{:?}", reference.floor);
-    for (name, h) in [
-        ("rk4", 0.1),
-        ("euler", 1.0 / 120.0),
-        ("trapezoid", 0.05),
-        ("rk4", 0.5),
-    ] {
-        let outcome = measure(&circle, method(name), Control::Step(h), &reference, GO_ON)
-            .unwrap()
-            .unwrap();
+    for (name, h) in [("rk4", 0.1), ("euler", 1.0 / 120.0), ("trapezoid", 0.05), ("rk4", 0.5)] {
+        let outcome =
+            measure(&circle, method(name), Control::Step(h), &reference, GO_ON).unwrap().unwrap();
         // The same error, computed step by step against the sine and the cosine.
         let mut y = circle.state.clone();
         let mut integrator = method(name).integrator(circle.model.system()).unwrap();
@@ -45,17 +37,12 @@ fn on_the_circle_the_error_is_the_known_one() {
         let steps = (10.0 / h).round() as u64;
         for k in 0..steps {
             let t = k as f64 * h;
-            integrator
-                .step(circle.model.system(), t, h, &mut y)
-                .unwrap();
+            integrator.step(circle.model.system(), t, h, &mut y).unwrap();
             let t = t + h;
             worst = worst.max((y[0] - t.cos()).hypot(y[1] - t.sin()));
         }
         let found = outcome.errors.position;
-        assert!(
-            (found / worst - 1.0).abs() < 0.02,
-            "{name}: {found:e}, {worst:e}"
-        );
+        assert!((found / worst - 1.0).abs() < 0.02, "{name}: {found:e}, {worst:e}");
         assert!(outcome.lost.is_none());
         assert!(outcome.work.evaluations >= steps);
     }
@@ -78,10 +65,7 @@ fn frames_between_steps_show_no_error_of_their_own() {
             let ratio = fits.errors.position / odd.errors.position;
             let expected = ((steps + 1.0) / steps).powi(4);
             println!("{name} {steps}: {ratio} {expected}");
-            assert!(
-                (ratio / expected - 1.0).abs() < 0.01,
-                "{name} {steps}: {ratio}"
-            );
+            assert!((ratio / expected - 1.0).abs() < 0.01, "{name} {steps}: {ratio}");
             assert_eq!(odd.work.evaluations, 4 * (steps as u64 + 1));
         }
     }
@@ -98,11 +82,7 @@ fn errors_are_of_what_was_asked_for() {
     // The phase of Runge-Kutta on the circle lags by h^4 / 120 of the time.
     let errors = run(&reference, &circle, "rk4", 0.1);
     let lag = 5.0 * 0.1f64.powi(4) / 120.0;
-    assert!(
-        (errors.phase / lag - 1.0).abs() < 0.01,
-        "{} {lag}",
-        errors.phase
-    );
+    assert!((errors.phase / lag - 1.0).abs() < 0.01, "{} {lag}", errors.phase);
     assert!((reference.still.position - 2.0).abs() < 1e-3);
 
     // Gravity is exact in any step: only the pinned end changes the momentum of a chain.
@@ -110,18 +90,13 @@ fn errors_are_of_what_was_asked_for() {
     let scope = |particle, at_end| within(&chain, 2.0, Scope { particle, at_end });
     let error = |scope: &Reference| run(scope, &chain, "rk4", 1.0 / 30.0);
     let all = error(&scope(None, false));
-    let each: Vec<_> = (0..4)
-        .map(|i| error(&scope(Some(i), true)).position)
-        .collect();
+    let each: Vec<_> = (0..4).map(|i| error(&scope(Some(i), true)).position).collect();
     let at_end = error(&scope(None, true)).position;
     let mean = (each.iter().map(|e| e * e).sum::<f64>() / 4.0).sqrt();
     assert!((mean / at_end - 1.0).abs() < 1e-6, "{mean} {at_end}");
     assert_eq!(each[0], 0.0);
     assert!(at_end < all.position && all.momentum > 0.0 && all.energy > 0.0);
-    let none = Scope {
-        particle: Some(4),
-        at_end: false,
-    };
+    let none = Scope { particle: Some(4), at_end: false };
     let refused = Reference::new(&chain, Frames::new(1.0), none, Precision::FINEST, GO_ON);
     assert!(refused.is_err());
 }
@@ -133,11 +108,8 @@ fn references_are_refined_as_long_as_that_helps() {
     let random = crate::reference::scene_of("random");
     let finest = reference(&random, 3.0);
     assert!(finest.floor.position < 1e-8, "{:?}", finest.floor);
-    let precision = Precision {
-        metric: Metric::Position,
-        uncertainty: 1e-3,
-        max_work: f64::INFINITY,
-    };
+    let precision =
+        Precision { metric: Metric::Position, uncertainty: 1e-3, max_work: f64::INFINITY };
     let frames = Frames::new(3.0);
     let coarse = Reference::new(&random, frames, Scope::default(), precision, GO_ON);
     let coarse = coarse.unwrap().unwrap();
@@ -149,23 +121,13 @@ fn references_are_refined_as_long_as_that_helps() {
 const KINKED: [&str; 2] = ["mit-sphere", "jelly"];
 
 /// Scenes that are left out, because their finest references take minutes.
-const LONG: [&str; 7] = [
-    "flag",
-    "drop",
-    "dam-break",
-    "cantilever",
-    "boxes",
-    "dominoes",
-    "ball-on-cloth",
-];
+const LONG: [&str; 7] =
+    ["flag", "drop", "dam-break", "cantilever", "boxes", "dominoes", "ball-on-cloth"];
 
 /// The uncertainty of the reference is small on every scene without collisions.
 #[test]
 fn references_agree_with_themselves() {
-    for entry in a3_scenes::SCENES
-        .iter()
-        .filter(|entry| !LONG.contains(&entry.name))
-    {
+    for entry in a3_scenes::SCENES.iter().filter(|entry| !LONG.contains(&entry.name)) {
         let scene = entry.build(None).unwrap().scene;
         let horizon = horizon(&scene, f64::INFINITY, GO_ON).unwrap().unwrap();
         let reference = reference(&scene, horizon.until);
@@ -181,11 +143,7 @@ fn references_agree_with_themselves() {
         );
         if !KINKED.contains(&entry.name) {
             // The double pendulum on rods is chaotic: runs separate within a second.
-            let bound = if entry.name == "double-pendulum" {
-                1e-3
-            } else {
-                1e-7
-            };
+            let bound = if entry.name == "double-pendulum" { 1e-3 } else { 1e-7 };
             assert!(reference.floor.position < bound, "{}", entry.name);
         }
     }
@@ -198,9 +156,7 @@ fn errors_fall_with_the_step_as_the_order_says() {
     for m in integrators::METHODS.iter().filter(|m| !m.is_adaptive()) {
         let h = reference.frames.spacing() / 32.0;
         let error = |h: f64| {
-            let outcome = measure(&mit, m, Control::Step(h), &reference, GO_ON)
-                .unwrap()
-                .unwrap();
+            let outcome = measure(&mit, m, Control::Step(h), &reference, GO_ON).unwrap().unwrap();
             outcome.errors.position
         };
         let (coarse, fine) = (error(h), error(0.5 * h));
@@ -221,11 +177,7 @@ fn ladders_go_down_from_just_past_the_limit() {
     for m in integrators::METHODS {
         let rungs = ladder(&modes, m, &frames, 20_000).unwrap();
         assert!(rungs.len() > 5, "{}", m.name);
-        assert!(
-            rungs.windows(2).all(|w| w[0].value() > w[1].value()),
-            "{}: {rungs:?}",
-            m.name
-        );
+        assert!(rungs.windows(2).all(|w| w[0].value() > w[1].value()), "{}: {rungs:?}", m.name);
         if !m.is_adaptive() {
             for rung in &rungs {
                 let steps = 1.0 / rung.value();
@@ -253,15 +205,7 @@ fn looks_are_not_a_part_of_the_time_of_a_run() {
             reads.set(reads.get() + 1);
             Duration::from_secs(reads.get())
         };
-        let outcome = measure_by(
-            &clock,
-            &mit,
-            method(name),
-            control,
-            &reference,
-            &mut [],
-            GO_ON,
-        );
+        let outcome = measure_by(&clock, &mit, method(name), control, &reference, &mut [], GO_ON);
         let looks = (reads.get() - 2) / 2;
         assert!(looks >= reference.frames.count, "{name}: {looks}");
         assert_eq!(outcome.unwrap().unwrap().time.as_secs(), looks + 1);
@@ -272,23 +216,11 @@ fn looks_are_not_a_part_of_the_time_of_a_run() {
 fn a_run_can_be_stopped() {
     let mit = scene("mit");
     let stop: &dyn Fn() -> bool = &|| false;
-    assert!(
-        Reference::finest(&mit, Frames::new(1.0), stop)
-            .unwrap()
-            .is_none()
-    );
+    assert!(Reference::finest(&mit, Frames::new(1.0), stop).unwrap().is_none());
     assert!(horizon(&mit, f64::INFINITY, stop).unwrap().is_none());
     let reference = reference(&mit, 0.1);
-    assert!(
-        measure(&mit, method("rk4"), Control::Step(0.01), &reference, stop)
-            .unwrap()
-            .is_none()
-    );
-    assert!(
-        choose(&mit, &reference, Metric::Position, 1e-3, stop, |_| ())
-            .unwrap()
-            .is_none()
-    );
+    assert!(measure(&mit, method("rk4"), Control::Step(0.01), &reference, stop).unwrap().is_none());
+    assert!(choose(&mit, &reference, Metric::Position, 1e-3, stop, |_| ()).unwrap().is_none());
 }
 
 /// The least work of all runs that meet the error and cost less than `most`: of adaptive methods at
@@ -296,9 +228,7 @@ fn a_run_can_be_stopped() {
 fn search(scene: &Scene, reference: &Reference, error: f64, most: f64) -> f64 {
     let mut best = most;
     let run = |m, control, best: &mut f64| {
-        let outcome = measure(scene, m, control, reference, GO_ON)
-            .unwrap()
-            .unwrap();
+        let outcome = measure(scene, m, control, reference, GO_ON).unwrap().unwrap();
         if outcome.lost.is_none() && outcome.errors.position <= error {
             *best = best.min(outcome.work.total());
         }
@@ -336,9 +266,7 @@ fn the_choice_is_the_best() {
     let entries = a3_scenes::SCENES.iter();
     let entries =
         entries.filter(|entry| ![LONG.as_slice(), &KINKED].concat().contains(&entry.name));
-    let mut scenes: Vec<_> = entries
-        .map(|entry| entry.build(None).unwrap().scene)
-        .collect();
+    let mut scenes: Vec<_> = entries.map(|entry| entry.build(None).unwrap().scene).collect();
     scenes.extend(["random", "jellyhang"].map(crate::reference::scene_of));
     for scene in scenes {
         let horizon = horizon(&scene, f64::INFINITY, GO_ON).unwrap().unwrap();

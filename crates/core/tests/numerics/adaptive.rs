@@ -11,15 +11,10 @@ use a3_core::{Cause, Control, Error, Method, Ode, ParticleSystem, Scene, Simulat
 fn circle(name: &str, relative: f64) -> (f64, usize) {
     let circle = scene("simple");
     let system = circle.model.system();
-    let mut adaptive = method(name)
-        .adaptive(system, Tolerance::new(relative).unwrap())
-        .unwrap();
+    let mut adaptive = method(name).adaptive(system, Tolerance::new(relative).unwrap()).unwrap();
     let (mut t, mut y, mut worst, mut steps) = (0.0, circle.state.clone(), 0.0f64, 0);
     while t < 10.0 * TAU {
-        t += adaptive
-            .advance(system, t, f64::INFINITY, &mut y)
-            .unwrap()
-            .h;
+        t += adaptive.advance(system, t, f64::INFINITY, &mut y).unwrap().h;
         steps += 1;
         worst = worst.max((y[0] - t.cos()).hypot(y[1] - t.sin()));
     }
@@ -52,14 +47,11 @@ fn dense_output_has_its_order() {
         let system = circle.model.system();
         // One step of length h, which a loose tolerance accepts.
         let error = |h: f64| {
-            let mut adaptive = method(name)
-                .adaptive(system, Tolerance::new(1e3).unwrap())
-                .unwrap();
+            let mut adaptive = method(name).adaptive(system, Tolerance::new(1e3).unwrap()).unwrap();
             adaptive.try_first(h);
             let mut y = circle.state.clone();
-            let Taken { h: taken, .. } = adaptive
-                .advance(system, 0.0, f64::INFINITY, &mut y)
-                .unwrap();
+            let Taken { h: taken, .. } =
+                adaptive.advance(system, 0.0, f64::INFINITY, &mut y).unwrap();
             assert_eq!(taken, h);
             let mut worst: f64 = 0.0;
             for k in 0..=20 {
@@ -76,24 +68,14 @@ fn dense_output_has_its_order() {
         let (coarse, fine) = (error(0.4), error(0.2));
         let measured = (coarse / fine).log2() - 1.0;
         println!("{name}: {coarse:.2e} {fine:.2e}: order {measured:.2}");
-        assert!(
-            (measured - f64::from(order)).abs() < 0.25,
-            "{name}: {measured}"
-        );
+        assert!((measured - f64::from(order)).abs() < 0.25, "{name}: {measured}");
     }
 }
 
 /// The state at a time does not depend on the frames before it, and frames cost no steps.
 #[test]
 fn frames_cost_no_steps() {
-    for name in [
-        "dopri5",
-        "rkf45",
-        "dop853",
-        "verner65",
-        "dprkn86",
-        "dprkn1210",
-    ] {
+    for name in ["dopri5", "rkf45", "dop853", "verner65", "dprkn86", "dprkn1210"] {
         for scene_name in ["mit", "chain"] {
             let mut often = simulation(scene_name, name, 1e-5);
             let mut once = simulation(scene_name, name, 1e-5);
@@ -111,10 +93,7 @@ fn frames_cost_no_steps() {
 #[test]
 fn an_adaptive_run_takes_part_in_everything() {
     let mut run = simulation("cloth", "dopri5", 1e-4);
-    assert_eq!(
-        (run.control(), run.step_size()),
-        (Control::Tolerance(1e-4), None)
-    );
+    assert_eq!((run.control(), run.step_size()), (Control::Tolerance(1e-4), None));
     run.take_steps(5).unwrap();
     assert_eq!(run.steps(), 5);
     assert!(run.step_size().unwrap() > 1e-4 && run.time() > 0.0);
@@ -143,8 +122,7 @@ fn an_adaptive_run_takes_part_in_everything() {
     run.set_method(method("rk4"), Control::Step(0.002)).unwrap();
     run.take_steps(10).unwrap();
     assert!((run.time() - 0.32).abs() < 1e-12);
-    run.set_method(method("dop853"), Control::Tolerance(1e-7))
-        .unwrap();
+    run.set_method(method("dop853"), Control::Tolerance(1e-7)).unwrap();
     run.advance_to(0.5).unwrap();
     assert_eq!(run.time(), 0.5);
     assert!(run.set_control(Control::Tolerance(0.0)).is_err());
@@ -152,12 +130,9 @@ fn an_adaptive_run_takes_part_in_everything() {
 
 #[test]
 fn a_fixed_step_of_an_adaptive_method_stays_a_step() {
-    let mut run = Simulation::new(
-        crate::common::scene("mit"),
-        method("dopri5"),
-        Control::Step(0.01),
-    )
-    .unwrap();
+    let mut run =
+        Simulation::new(crate::common::scene("mit"), method("dopri5"), Control::Step(0.01))
+            .unwrap();
     run.take_steps(30).unwrap();
     let state = run.state().to_vec();
     assert_eq!((run.time(), run.step_size()), (0.3, Some(0.01)));
@@ -184,10 +159,7 @@ fn a_tolerance_is_for_methods_that_estimate_their_error() {
     assert!(error.contains("estimates no error"), "{error}");
     let mut run = start(Control::Step(0.01)).unwrap();
     assert!(run.set_control(Control::Tolerance(1e-3)).is_err());
-    assert!(
-        run.set_method(method("rk4"), Control::Tolerance(1e-3))
-            .is_err()
-    );
+    assert!(run.set_method(method("rk4"), Control::Tolerance(1e-3)).is_err());
     assert_eq!(run.control(), Control::Step(0.01));
 }
 
@@ -258,10 +230,7 @@ fn where_no_step_will_do_it_says_so() {
     let Err(Error::BlowUp(lost)) = run.advance_to(2.0) else {
         panic!("past a pole");
     };
-    assert!(matches!(
-        lost.cause,
-        Cause::StepTooSmall { .. } | Cause::Away { .. }
-    ));
+    assert!(matches!(lost.cause, Cause::StepTooSmall { .. } | Cause::Away { .. }));
 }
 
 /// System whose derivative is NaN from a time on (s).
@@ -285,11 +254,8 @@ fn a_derivative_that_is_no_number_ends_a_run() {
             let mut bare = scene("simple");
             bare.model = a3_core::Model::Points(std::sync::Arc::new(Undefined(from)));
             bare.state = vec![1.0; 3];
-            let control = if m.is_adaptive() {
-                Control::Tolerance(1e-6)
-            } else {
-                Control::Step(0.05)
-            };
+            let control =
+                if m.is_adaptive() { Control::Tolerance(1e-6) } else { Control::Step(0.05) };
             let mut run = Simulation::new(bare, m, control).unwrap();
             let Err(Error::BlowUp(lost)) = run.advance_to(1.0) else {
                 panic!("{}: it went on without a derivative", m.name);
@@ -318,13 +284,7 @@ fn tolerances_that_make_no_sense_are_refused() {
 fn pairs_take_fixed_steps_too() {
     let circle = scene("simple");
     for (name, error) in [("dopri5", 1e-8), ("rkf45", 1e-7), ("dop853", 1e-13)] {
-        let y = integrate(
-            circle.model.system(),
-            method(name),
-            &circle.state,
-            0.05,
-            100,
-        );
+        let y = integrate(circle.model.system(), method(name), &circle.state, 0.05, 100);
         let (sin, cos) = 5f64.sin_cos();
         let found = (y[0] - cos).hypot(y[1] - sin);
         assert!(found < error, "{name}: {found:e}");
@@ -398,12 +358,7 @@ fn numbers_that_do_not_count_cost_nothing() {
     let ignored = steps(1e-6, Some(vec![1.0; 5]));
     println!("{alone}, {counted}, {ignored} steps");
     assert!(counted > 20 * alone && counted > 3 * ignored);
-    assert!(
-        Ode::new(1, |_t, _y, _dydt| ())
-            .unwrap()
-            .with_scales(vec![0.0])
-            .is_err()
-    );
+    assert!(Ode::new(1, |_t, _y, _dydt| ()).unwrap().with_scales(vec![0.0]).is_err());
 }
 
 /// Scales and an absolute tolerance say two things about the same error.
@@ -416,8 +371,5 @@ fn an_absolute_tolerance_beside_scales_is_refused() {
     scene.limits.absolute = Some(1e-6);
     let refused = Simulation::new(scene, method("dopri5"), Control::Tolerance(1e-3));
     let refused = refused.err().unwrap().to_string();
-    assert!(
-        refused.contains("leave out the scales, or the absolute tolerance"),
-        "{refused}"
-    );
+    assert!(refused.contains("leave out the scales, or the absolute tolerance"), "{refused}");
 }

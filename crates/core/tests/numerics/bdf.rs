@@ -45,11 +45,7 @@ fn a_stiff_chain_costs_little() {
     for (relative, most, work) in [(5e-4, 1e-3, 2000.0), (1e-5, 1e-4, 3000.0)] {
         let mut bdf = run("bdf", relative);
         let error = error(&mut bdf, &mut run("dop853", 1e-9), 2.0);
-        println!(
-            "{relative:e}: {error:.1e} m, {:.0}, {:?}",
-            bdf.work().total(),
-            bdf.work()
-        );
+        println!("{relative:e}: {error:.1e} m, {:.0}, {:?}", bdf.work().total(), bdf.work());
         assert!(error <= most && bdf.work().total() <= work);
     }
 }

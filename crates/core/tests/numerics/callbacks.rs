@@ -15,11 +15,7 @@ fn failing(calls: &Arc<AtomicUsize>) -> Scene {
     let f = move |t: f64, y: &[f64], dydt: &mut [f64]| {
         calls.fetch_add(1, Ordering::Relaxed);
         dydt[0] = -y[0];
-        if t > 0.5 {
-            Err("no data after half a second")
-        } else {
-            Ok(())
-        }
+        if t > 0.5 { Err("no data after half a second") } else { Ok(()) }
     };
     Scene::new("failing", Ode::new(1, f).unwrap(), vec![1.0])
 }
@@ -79,19 +75,13 @@ fn a_failure_of_a_step_ends_a_run_with_its_own_words() {
     let mut run =
         Simulation::new(scene.clone(), short.unwrap().register(), Control::Step(0.1)).unwrap();
     let why = run.advance_to(1.0).unwrap_err().to_string();
-    assert_eq!(
-        why,
-        "the method own-short returned 1 numbers, but the state has 2"
-    );
+    assert_eq!(why, "the method own-short returned 1 numbers, but the state has 2");
 
     let wrong = Method::from_step("own-wrong", 1, |f, t, _, _| f.at(t, &[0.0]));
     let mut run =
         Simulation::new(scene.clone(), wrong.unwrap().register(), Control::Step(0.1)).unwrap();
     let (expected, found) = (2, 1);
-    assert_eq!(
-        run.advance_to(1.0),
-        Err(Error::Dimension { expected, found })
-    );
+    assert_eq!(run.advance_to(1.0), Err(Error::Dimension { expected, found }));
 
     let nan = Method::from_step("own-nan", 1, |_, _, y, _| Ok(vec![f64::NAN; y.len()]));
     let mut run =

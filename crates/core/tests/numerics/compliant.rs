@@ -19,9 +19,7 @@ fn methods() -> impl Iterator<Item = &'static Method> {
 fn numbers(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 }
@@ -77,10 +75,7 @@ fn one_spring_takes_the_step_of_implicit_euler() {
             let place = path.at(h);
             for axis in 0..3 {
                 let [pin, free] = [2 * axis, 2 * axis + 1];
-                assert_eq!(
-                    [x[pin], v[pin]],
-                    [place.position[axis], place.velocity[axis]]
-                );
+                assert_eq!([x[pin], v[pin]], [place.position[axis], place.velocity[axis]]);
                 let momentum = 0.7 * (v[free] - y[6 + free]) - h * f[free];
                 let gap = x[free] - y[free] - h * v[free];
                 assert!(
@@ -97,9 +92,7 @@ fn one_spring_takes_the_step_of_implicit_euler() {
 fn what_is_at_rest_stays_at_rest() {
     let grid = Grid::new(3, 3).unwrap();
     let mut network = Network::new(vec![0.3; 9]).unwrap();
-    network
-        .add(Sheet::new(grid, 0.5, [60.0, 0.0, 30.0], 0.1).unwrap())
-        .unwrap();
+    network.add(Sheet::new(grid, 0.5, [60.0, 0.0, 30.0], 0.1).unwrap()).unwrap();
     let mut y = vec![0.0; 54];
     for k in 0..9 {
         (y[k], y[9 + k]) = (0.5 * (k % 3) as f64, -0.5 * (k / 3) as f64);
@@ -139,10 +132,7 @@ fn random_networks_are_integrated_with_order_one() {
         let exact = integrate(&network, method("dop853"), &y, 1.0 / 512.0, 256);
         for m in methods() {
             let [coarse, fine] = [2000, 4000].map(|steps| {
-                distance(
-                    &integrate(&network, m, &y, 0.5 / steps as f64, steps),
-                    &exact,
-                )
+                distance(&integrate(&network, m, &y, 0.5 / steps as f64, steps), &exact)
             });
             let order = (coarse / fine).log2();
             assert!((order - 1.0).abs() < 0.1, "{} {seed}: {order}", m.name);
@@ -248,18 +238,10 @@ fn a_system_that_lists_its_springs_is_served_and_another_is_refused() {
     let [listed, other] = [true, false].map(|lists| Pair { law, lists });
     let exact = integrate(&other, method("rk4"), &y, 1e-3, 500);
     for m in methods() {
-        let error = |steps| {
-            distance(
-                &integrate(&listed, m, &y, 0.5 / steps as f64, steps),
-                &exact,
-            )
-        };
+        let error = |steps| distance(&integrate(&listed, m, &y, 0.5 / steps as f64, steps), &exact);
         let order = (error(500) / error(1000)).log2();
         assert!((order - 1.0).abs() < 0.05, "{}: {order}", m.name);
-        let refused = Error::Unsupported {
-            method: m.title,
-            why: Refusal::LacksSprings,
-        };
+        let refused = Error::Unsupported { method: m.title, why: Refusal::LacksSprings };
         assert_eq!(m.check(&other), Err(refused));
     }
 }
@@ -304,18 +286,12 @@ fn prices_measured() {
     ] {
         let network = scene.model.network().unwrap();
         let mut listed = Network::new(network.masses().to_vec()).unwrap();
-        listed
-            .add(Springs::new(network.springs().collect()))
-            .unwrap();
+        listed.add(Springs::new(network.springs().collect())).unwrap();
         let (x, v) = scene.state.split_at(scene.state.len() / 2);
         let mut f = vec![0.0; x.len()];
         let unit = time(&mut || listed.forces(0.0, black_box(x), v, &mut f));
         let own = time(&mut || network.forces(0.0, black_box(x), v, &mut f));
-        print!(
-            "{name:<12} one by one {:7.1} us, own {:.2}",
-            1e6 * unit,
-            own / unit
-        );
+        print!("{name:<12} one by one {:7.1} us, own {:.2}", 1e6 * unit, own / unit);
         for m in methods() {
             let mut integrator = m.integrator(network).unwrap();
             let mut y = scene.state.clone();

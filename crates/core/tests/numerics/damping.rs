@@ -65,18 +65,10 @@ fn the_limit_is_that_of_its_stability_function() {
         let (mut low, mut high) = (0.1, 1e3);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            *(if excess(middle) > 0.0 {
-                &mut high
-            } else {
-                &mut low
-            }) = middle;
+            *(if excess(middle) > 0.0 { &mut high } else { &mut low }) = middle;
         }
         assert!(low > 1.99, "{low}");
-        let mode = Mode {
-            stiffness: 1.0,
-            damping: 2.0 * zeta,
-            ..Mode::default()
-        };
+        let mode = Mode { stiffness: 1.0, damping: 2.0 * zeta, ..Mode::default() };
         let mut growth = Growth::new(method(METHOD), mode).unwrap();
         assert!(growth.of_step(0.999 * low) < 1.0 + 1e-9, "{zeta}: {low}");
         assert!(growth.of_step(1.001 * low) > 1.0, "{zeta}: {low}");

@@ -17,10 +17,7 @@ fn taylor(name: &str, share: Option<f64>) -> Method {
             term * rate
         });
         let terms: Vec<_> = terms.collect();
-        let mut found = vec![
-            vec![y[0] + terms.iter().sum::<f64>()],
-            vec![terms[DEGREE - 1]],
-        ];
+        let mut found = vec![vec![y[0] + terms.iter().sum::<f64>()], vec![terms[DEGREE - 1]]];
         if let Some(share) = share {
             found.extend(terms.into_iter().map(|term| vec![share * term]));
         }
@@ -75,12 +72,6 @@ fn states_within_a_step_are_on_the_polynomial_of_the_method() {
 
 #[test]
 fn a_polynomial_that_ends_elsewhere_is_refused() {
-    let told = advanced(&taylor("taylor-wrong", Some(0.9)))
-        .err()
-        .unwrap()
-        .to_string();
-    assert!(
-        told.contains("taylor-wrong returned do not sum to the change"),
-        "{told}"
-    );
+    let told = advanced(&taylor("taylor-wrong", Some(0.9))).err().unwrap().to_string();
+    assert!(told.contains("taylor-wrong returned do not sum to the change"), "{told}");
 }

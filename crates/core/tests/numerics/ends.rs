@@ -26,10 +26,7 @@ fn errors_are_those_at_the_ends_of_steps() {
             let squared = (0..5).map(|i| (run.position(i) - exact.position(i)).norm_squared());
             worst = worst.max((squared.sum::<f64>() / 5.0).sqrt());
         }
-        assert!(
-            (found / worst - 1.0).abs() < 0.01,
-            "{name}: {found} {worst}"
-        );
+        assert!((found / worst - 1.0).abs() < 0.01, "{name}: {found} {worst}");
     }
 }
 
@@ -60,9 +57,5 @@ fn a_reference_says_until_when_it_is_clear() {
     let (until, known) = reference.clear_until().unwrap();
     let impact = f64::sqrt(2.0 * 0.1 / 9.81);
     assert!((until - impact).abs() < 1.0 / 60.0, "{until} {impact}");
-    assert!(
-        known < 1e-9 && reference.floor.position > 1e-8,
-        "{known} {:?}",
-        reference.floor
-    );
+    assert!(known < 1e-9 && reference.floor.position > 1e-8, "{known} {:?}", reference.floor);
 }

@@ -30,10 +30,7 @@ fn predators_and_prey() {
             let refused = method.integrator(&LotkaVolterra).err();
             assert_eq!(
                 refused,
-                Some(Error::Unsupported {
-                    method: method.title,
-                    why: Refusal::LacksMasses
-                })
+                Some(Error::Unsupported { method: method.title, why: Refusal::LacksMasses })
             );
             continue;
         }
@@ -55,12 +52,6 @@ fn a_state_of_another_length_is_refused() {
     for method in integrators::METHODS.iter().filter(|m| !m.needs_mechanics()) {
         let mut integrator = method.integrator(&LotkaVolterra).unwrap();
         let refused = integrator.step(&LotkaVolterra, 0.0, 0.1, &mut [1.0; 3]);
-        assert_eq!(
-            refused,
-            Err(Error::Dimension {
-                expected: 2,
-                found: 3
-            })
-        );
+        assert_eq!(refused, Err(Error::Dimension { expected: 2, found: 3 }));
     }
 }

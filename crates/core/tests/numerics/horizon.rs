@@ -19,9 +19,7 @@ fn buckling_out_of_a_plane_is_no_chaos() {
     );
     let found = horizon(&truss, f64::INFINITY, &|| true).unwrap().unwrap();
     assert!(found.buckles && found.lyapunov < 1.0, "{found:?}");
-    let found = horizon(&scene("double-pendulum"), f64::INFINITY, &|| true)
-        .unwrap()
-        .unwrap();
+    let found = horizon(&scene("double-pendulum"), f64::INFINITY, &|| true).unwrap().unwrap();
     assert!(!found.buckles && found.lyapunov.is_finite(), "{found:?}");
 }
 
@@ -61,11 +59,7 @@ fn growth_is_told_where_it_is_no_chaos() {
     };
     let find = |gravity| horizon(&upright(gravity), f64::INFINITY, &|| true);
     let grown = [-0.09, 0.09].map(|gravity| find(gravity).unwrap().unwrap());
-    assert!(
-        grown
-            .iter()
-            .all(|found| found.lyapunov.is_infinite() && found.until == 10.0)
-    );
+    assert!(grown.iter().all(|found| found.lyapunov.is_infinite() && found.until == 10.0));
     assert!((3.0..10.2).contains(&grown[0].growth), "{grown:?}");
     assert!((0.9..1.1).contains(&grown[1].growth), "{grown:?}");
 }
@@ -79,10 +73,7 @@ fn stiff_motion_that_dies_out_is_no_chaos() {
         });
         let scene = Scene::new("follower", system.unwrap(), vec![1.0]);
         let found = horizon(&scene, f64::INFINITY, &|| true).unwrap().unwrap();
-        assert!(
-            found.lyapunov.is_infinite() && found.growth < 2.0,
-            "{k:e}: {found:?}"
-        );
+        assert!(found.lyapunov.is_infinite() && found.growth < 2.0, "{k:e}: {found:?}");
     }
 }
 
@@ -96,9 +87,6 @@ fn growth_from_a_small_start_is_no_chaos() {
         });
         let scene = Scene::new("driven", driven.unwrap(), vec![1e-8]);
         let found = horizon(&scene, until, &|| true).unwrap().unwrap();
-        assert!(
-            found.lyapunov.is_infinite() && found.growth < 2.0,
-            "{unit:e}: {found:?}"
-        );
+        assert!(found.lyapunov.is_infinite() && found.growth < 2.0, "{unit:e}: {found:?}");
     }
 }

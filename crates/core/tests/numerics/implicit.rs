@@ -76,9 +76,7 @@ fn couplings_are_the_symmetric_part_of_the_differential() {
                 }
             }
             network.couplings(0.0, x, false, &mut |coupling| {
-                let Coupling::Axial(c) = coupling else {
-                    panic!("springs act along their length")
-                };
+                let Coupling::Axial(c) = coupling else { panic!("springs act along their length") };
                 let e: [f64; 3] = std::array::from_fn(|a| d[a * n + c.i] - d[a * n + c.j]);
                 let share = (0..3).map(|a| e[a] * c.direction[a]).sum::<f64>();
                 for a in 0..3 {
@@ -93,10 +91,7 @@ fn couplings_are_the_symmetric_part_of_the_differential() {
                 }
             });
             let largest = crate::common::size(&df);
-            assert!(
-                crate::common::distance(&df, &sum) <= 1e-12 * largest,
-                "{name}, {damping}"
-            );
+            assert!(crate::common::distance(&df, &sum) <= 1e-12 * largest, "{name}, {damping}");
         }
     }
 }
@@ -150,11 +145,7 @@ fn energy_over_a_long_time() {
     let (_, rk4) = drift("rk4", 0.02);
     assert!(rk4 > 100.0 * pefrl);
     // The energy error oscillates and does not grow with time.
-    for (name, h) in [
-        ("implicit-midpoint", 0.01),
-        ("pefrl", 0.02),
-        ("verlet", 0.005),
-    ] {
+    for (name, h) in [("implicit-midpoint", 0.01), ("pefrl", 0.02), ("verlet", 0.005)] {
         let (early, late) = drift(name, h);
         assert!(late < 1.5 * early, "{name}: {early:e}, {late:e}");
     }
@@ -171,9 +162,7 @@ fn falling(side: usize, omega: f64) -> Scene {
     // The largest angular frequency of such a square is about sqrt(7.8 k/m).
     let k = mass * omega * omega / 7.8;
     let mut network = Network::new(vec![mass; n]).unwrap();
-    network
-        .add(Sheet::new(grid, spacing, [k, k, 0.25 * k], 0.0).unwrap())
-        .unwrap();
+    network.add(Sheet::new(grid, spacing, [k, k, 0.25 * k], 0.0).unwrap()).unwrap();
     let mut state = vec![0.0; 6 * n];
     for i in 0..n {
         state[i] = (i % side) as f64 * spacing;
@@ -203,12 +192,8 @@ fn stiff_cloth_falls_at_a_frame_a_step() {
         assert!(run.largest_stretch().unwrap() < 1.3, "{name}");
     }
     // The classical Runge-Kutta method blows up at this step.
-    let mut run = Simulation::new(
-        falling(20, 1000.0),
-        method("rk4"),
-        Control::Step(1.0 / 60.0),
-    )
-    .unwrap();
+    let mut run =
+        Simulation::new(falling(20, 1000.0), method("rk4"), Control::Step(1.0 / 60.0)).unwrap();
     assert!(run.advance_to(1.0).is_err());
 }
 
@@ -223,20 +208,12 @@ fn hands_pull_at_implicit_cloth() {
         let from = run.position(399);
         run.pull(from + Vector3::new(0.2, 0.1, 0.3));
         run.advance_to(run.time() + 0.3).unwrap();
-        assert_relative_eq!(
-            run.position(399),
-            from + Vector3::new(0.2, 0.1, 0.3),
-            epsilon = 1e-9
-        );
+        assert_relative_eq!(run.position(399), from + Vector3::new(0.2, 0.1, 0.3), epsilon = 1e-9);
         run.release();
         run.advance_to(1.0).unwrap();
         let network = run.model().network().unwrap();
         for (i, path) in network.pins() {
-            assert_relative_eq!(
-                run.position(i),
-                path.at(run.time()).position,
-                epsilon = 1e-12
-            );
+            assert_relative_eq!(run.position(i), path.at(run.time()).position, epsilon = 1e-12);
         }
         assert!(run.largest_stretch().unwrap() < 2.0);
     }

@@ -7,10 +7,7 @@ use a3_core::{Grid, Mechanics, Network, Path, Sheet, Vector3, integrators};
 use approx::assert_relative_eq;
 
 fn undamped(frequency: f64) -> Mode {
-    Mode {
-        stiffness: frequency * frequency,
-        ..Mode::default()
-    }
+    Mode { stiffness: frequency * frequency, ..Mode::default() }
 }
 
 #[test]
@@ -23,9 +20,7 @@ fn growth_on_the_imaginary_axis() {
                 ("midpoint", (1.0 + y.powi(4) / 4.0).sqrt()),
                 ("rk4", (1.0 - y.powi(6) / 72.0 + y.powi(8) / 576.0).sqrt()),
             ] {
-                let radius = Growth::new(method(name), undamped(w))
-                    .unwrap()
-                    .of_step(y / w);
+                let radius = Growth::new(method(name), undamped(w)).unwrap().of_step(y / w);
                 assert_relative_eq!(radius, expected, max_relative = 1e-11);
             }
         }
@@ -70,23 +65,13 @@ fn limits_in_the_plane() {
     }
     for name in ["euler", "trapezoid", "midpoint", "rkf45"] {
         let found = limit(name, undamped(100.0));
-        assert!(
-            found.bounded == 0.0 && 100.0 * found.step < 1.5,
-            "{name}: {found:?}"
-        );
+        assert!(found.bounded == 0.0 && 100.0 * found.step < 1.5, "{name}: {found:?}");
     }
     let w = 1e5;
-    let more = (
-        "srkn11",
-        [9.074_230, 9.129_695, 9.678_548, 10.981_682, 5.525_655],
-    );
+    let more = ("srkn11", [9.074_230, 9.129_695, 9.678_548, 10.981_682, 5.525_655]);
     for (name, limits) in DAMPED_LIMITS.into_iter().chain([more]) {
         for (zeta, expected) in ZETAS.into_iter().zip(limits) {
-            let mode = Mode {
-                stiffness: w * w,
-                drag: 2.0 * zeta * w,
-                ..Mode::default()
-            };
+            let mode = Mode { stiffness: w * w, drag: 2.0 * zeta * w, ..Mode::default() };
             let found = limit(name, mode);
             assert_relative_eq!(w * found.step, expected, max_relative = 2e-3);
             assert_relative_eq!(w * found.bounded, expected, max_relative = 2e-6);
@@ -124,11 +109,7 @@ fn limits_of_damped_springs() {
         (1.0, 2.459_701),
         (2.0, 1.380_401),
     ] {
-        let mode = Mode {
-            damping: 2.0 * zeta * w,
-            reads_velocity: true,
-            ..undamped(w)
-        };
+        let mode = Mode { damping: 2.0 * zeta * w, reads_velocity: true, ..undamped(w) };
         let found = largest_step(method("verlet"), &[mode]).unwrap().unwrap();
         assert_relative_eq!(w * found.step, expected, max_relative = 2e-3);
         assert_relative_eq!(w * found.bounded, expected, max_relative = 2e-6);
@@ -150,14 +131,10 @@ fn limits_of_damped_springs() {
 /// in between: Euler's method with little damping, and that of Dormand and Prince without any.
 #[test]
 fn slow_growth_is_no_limit_and_no_stability() {
-    let damped = Mode {
-        drag: 0.02,
-        ..undamped(10.0)
-    };
-    for (name, mode, bounded) in [
-        ("euler", damped, 2e-4),
-        ("dopri5", undamped(10.0), 0.099_718_900_9),
-    ] {
+    let damped = Mode { drag: 0.02, ..undamped(10.0) };
+    for (name, mode, bounded) in
+        [("euler", damped, 2e-4), ("dopri5", undamped(10.0), 0.099_718_900_9)]
+    {
         let found = largest_step(method(name), &[mode]).unwrap().unwrap();
         assert!(!found.is_sharp(), "{name}: {found:?}");
         assert_relative_eq!(found.bounded, bounded, max_relative = 1e-6);
@@ -185,10 +162,7 @@ fn the_energy_of_a_mode_swings() {
     }
     // Damping makes the exact energy oscillate, and a Runge-Kutta method adds nothing to that.
     for ratio in [0.3, 0.9] {
-        let damped = Mode {
-            damping: 2.0 * ratio * 30.0,
-            ..undamped(30.0)
-        };
+        let damped = Mode { damping: 2.0 * ratio * 30.0, ..undamped(30.0) };
         let mut growth = Growth::new(method("rk4"), damped).unwrap();
         assert_relative_eq!(growth.swing(1.0 / 30.0), 1.0, max_relative = 1e-6);
     }
@@ -230,9 +204,7 @@ fn a_cloth_has_its_frequency() {
     ] {
         let grid = Grid::new(side, side).unwrap();
         let mut network = Network::new(vec![1.0; grid.particles()]).unwrap();
-        network
-            .add(Sheet::new(grid, 1.0, [1.0; 3], 0.0).unwrap())
-            .unwrap();
+        network.add(Sheet::new(grid, 1.0, [1.0; 3], 0.0).unwrap()).unwrap();
         let n = grid.particles();
         let mut y = vec![0.0; 6 * n];
         for k in 0..n {
@@ -268,11 +240,7 @@ fn drag_and_spring_damping_are_told_apart() {
     assert_relative_eq!(modes[0].drag, 0.3, max_relative = 1e-9);
     // Damping is 0.006 s times the stiffness: all stiffness acts along the springs while none is
     // stretched.
-    assert_relative_eq!(
-        modes[0].damping,
-        0.006 * modes[0].stiffness,
-        max_relative = 0.05
-    );
+    assert_relative_eq!(modes[0].damping, 0.006 * modes[0].stiffness, max_relative = 0.05);
     // The sum of the stiffnesses at a particle bounds the fastest mode.
     let bound = 2.0 * (4.0 * 2500.0 + 4.0 * 1250.0 + 4.0 * 625.0);
     assert!(modes[0].stiffness < bound && modes[0].stiffness > 0.4 * bound);

@@ -59,10 +59,7 @@ fn robertson() -> Ode {
 /// Values of Hairer and Wanner (1996) at 40 s, and of the examples of SUNDIALS at 4e5 s.
 #[test]
 fn robertson_ends_where_published() {
-    let ends = [
-        (40.0, [0.715_82, 9.185_5e-6, 0.284_17]),
-        (4e5, [4.939e-3, 1.985_2e-8, 0.995_06]),
-    ];
+    let ends = [(40.0, [0.715_82, 9.185_5e-6, 0.284_17]), (4e5, [4.939e-3, 1.985_2e-8, 0.995_06])];
     for name in SERVING {
         for (until, values) in ends {
             let (y, work) = run(name, &robertson(), 1e-8, until, vec![1.0, 0.0, 0.0]).unwrap();
@@ -129,10 +126,7 @@ fn the_transistor_amplifier_ends_where_published() {
         f[7] = y[7] * R;
     });
     let mut matrix = vec![];
-    for (k, [i, j]) in [[0, 1], [2, 2], [3, 4], [5, 5], [6, 7]]
-        .into_iter()
-        .enumerate()
-    {
+    for (k, [i, j]) in [[0, 1], [2, 2], [3, 4], [5, 5], [6, 7]].into_iter().enumerate() {
         let c = 1e-6 * (k + 1) as f64;
         matrix.extend([(i, i, -c), (j, j, -c)].iter().take((j - i + 1) as usize));
         if i != j {
@@ -175,11 +169,7 @@ fn heat_by_finite_elements_decays_as_its_sines_do() {
             near.map(move |j| (i, j, if i == j { 4.0 } else { 1.0 } * h / 6.0))
         });
         let rod = rod.unwrap().with_mass_matrix(band.collect()).unwrap();
-        let sine = |m: f64| {
-            (1..=n)
-                .map(|k| (m * PI * h * k as f64).sin())
-                .collect::<Vec<_>>()
-        };
+        let sine = |m: f64| (1..=n).map(|k| (m * PI * h * k as f64).sin()).collect::<Vec<_>>();
         let left = |m: f64| {
             let c = (m * PI * h).cos();
             (-6.0 * (1.0 - c) / (h * h * (2.0 + c)) * 0.1).exp()
@@ -206,13 +196,7 @@ fn a_regular_matrix_is_its_inverse_on_the_other_side() {
     // M = [[2, 1], [1, 1]], with the inverse [[1, -1], [-1, 2]].
     let f = |t: f64, y: &[f64]| [-50.0 * y[0] + t.sin(), y[0] * y[1] - y[1]];
     let with = Ode::new(2, move |t, y, out| out.copy_from_slice(&f(t, y))).unwrap();
-    let matrix = vec![
-        (0, 0, 2.0),
-        (0, 1, 0.5),
-        (0, 1, 0.5),
-        (1, 0, 1.0),
-        (1, 1, 1.0),
-    ];
+    let matrix = vec![(0, 0, 2.0), (0, 1, 0.5), (0, 1, 0.5), (1, 0, 1.0), (1, 1, 1.0)];
     let with = with.with_mass_matrix(matrix).unwrap();
     let without = Ode::new(2, move |t, y, out| {
         let [a, b] = f(t, y);
@@ -225,9 +209,7 @@ fn a_regular_matrix_is_its_inverse_on_the_other_side() {
     }
     // A matrix of ones on its diagonal is none.
     let plain = Ode::new(2, |_, y, out: &mut [f64]| out.copy_from_slice(y)).unwrap();
-    let plain = plain
-        .with_mass_matrix(vec![(0, 0, 1.0), (1, 1, 1.0)])
-        .unwrap();
+    let plain = plain.with_mass_matrix(vec![(0, 0, 1.0), (1, 1, 1.0)]).unwrap();
     assert!(plain.mass_matrix().is_empty());
 }
 
@@ -274,11 +256,7 @@ fn equations_that_determine_nothing_are_refused_in_a_line() {
     };
     for name in SERVING {
         let start = vec![0.0, 0.7];
-        let told = |ode: &Ode| {
-            run(name, ode, 1e-6, 1.0, start.clone())
-                .unwrap_err()
-                .to_string()
-        };
+        let told = |ode: &Ode| run(name, ode, 1e-6, 1.0, start.clone()).unwrap_err().to_string();
         let deep = told(&make(|t, y| y[0] - t.sin()));
         assert!(deep.contains("differentiate them until they do"), "{deep}");
         let none = told(&make(|_, y| y[1] * y[1] + 1.0));
@@ -328,12 +306,7 @@ fn a_choice_has_a_reference_and_the_methods_that_serve() {
     assert!(reference.is_stiff);
     assert!(reference.floor.state < 1e-8, "{:?}", reference.floor);
     let found = choose(&scene, &reference, Metric::State, 1e-5, &go_on, |_| {});
-    let mut names: Vec<_> = found
-        .unwrap()
-        .unwrap()
-        .iter()
-        .map(|c| c.method.name)
-        .collect();
+    let mut names: Vec<_> = found.unwrap().unwrap().iter().map(|c| c.method.name).collect();
     names.sort_unstable();
     assert_eq!(names, ["bdf", "radau"]);
 }

@@ -47,11 +47,7 @@ pub fn net(seed: u64) -> Scene {
         .map(|i| {
             let height = -0.4 * (i / 3) as f64;
             let angle = 2.1 * i as f64 + numbers.between(-0.4, 0.4);
-            [
-                angle.cos(),
-                height + numbers.between(-0.1, 0.1),
-                angle.sin(),
-            ]
+            [angle.cos(), height + numbers.between(-0.1, 0.1), angle.sin()]
         })
         .collect();
     let (mut positions, mut masses, mut springs) = (String::new(), String::new(), String::new());
@@ -71,11 +67,7 @@ pub fn net(seed: u64) -> Scene {
             let _ = write!(springs, "[{i}, {j}, {stiffness}, {rest}, {damping}], ");
         }
     }
-    let drag = if seed % 4 == 1 {
-        0.0
-    } else {
-        10f64.powf(numbers.between(0.0, 1.0))
-    };
+    let drag = if seed % 4 == 1 { 0.0 } else { 10f64.powf(numbers.between(0.0, 1.0)) };
     described(&format!(
         "gravity = [0, {}, 0]
         drag = {drag}
@@ -95,10 +87,7 @@ fn growth(still: &Scene, name: &str, h: f64) -> f64 {
     let (n, half) = (network.particles(), still.state.len() / 2);
     let mut nudged = still.clone();
     let mut numbers = Numbers(9);
-    let size = 1e-7
-        * still.state[..half]
-            .iter()
-            .fold(0.0, |m: f64, x| m.max(x.abs()));
+    let size = 1e-7 * still.state[..half].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     for k in (0..half).filter(|k| !network.is_pinned(k % n)) {
         nudged.state[half + k] = size * numbers.between(-1.0, 1.0) / network.masses()[k % n].sqrt();
     }
@@ -110,10 +99,7 @@ fn growth(still: &Scene, name: &str, h: f64) -> f64 {
         if run.take_steps(1).is_err() || beside.take_steps(1).is_err() {
             return f64::INFINITY;
         }
-        let speeds = run.state()[half..]
-            .iter()
-            .zip(&beside.state()[half..])
-            .enumerate();
+        let speeds = run.state()[half..].iter().zip(&beside.state()[half..]).enumerate();
         let speed = speeds.fold(0.0, |most: f64, (k, (a, b))| {
             most.max((a - b).abs() * network.masses()[k % n].sqrt())
         });
@@ -134,16 +120,9 @@ fn limits_at_rest_hold_where_damping_mixes_modes() {
     let scenes: Vec<_> = (0..10).map(net).chain([described(HEAVY_DRAG)]).collect();
     on_all_cores(scenes.into_iter().enumerate(), |(seed, scene)| {
         let rest = rest(&scene, || true).unwrap().unwrap();
-        for name in [
-            "euler",
-            "trapezoid",
-            "rk4",
-            "dopri5",
-            "symplectic",
-            "verlet",
-            "pefrl",
-            "dprkn86",
-        ] {
+        for name in
+            ["euler", "trapezoid", "rk4", "dopri5", "symplectic", "verlet", "pefrl", "dprkn86"]
+        {
             let Ok(limit) = rest.largest_step(method(name)) else {
                 // Springs are damped.
                 continue;
@@ -155,14 +134,8 @@ fn limits_at_rest_hold_where_damping_mixes_modes() {
             let grown = |part: f64| growth(&rest.scene, name, part * limit.step);
             let below = grown(0.97);
             // A method of several kicks may be stable again at slightly longer steps.
-            let above = [1.03, 1.01, 1.005]
-                .map(grown)
-                .into_iter()
-                .fold(0.0, f64::max);
-            assert!(
-                below < 2.0 && above > 2.0,
-                "net {seed}, {name}: {below} {above} {limit:?}"
-            );
+            let above = [1.03, 1.01, 1.005].map(grown).into_iter().fold(0.0, f64::max);
+            assert!(below < 2.0 && above > 2.0, "net {seed}, {name}: {below} {above} {limit:?}");
         }
     });
 }

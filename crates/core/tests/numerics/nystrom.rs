@@ -49,10 +49,7 @@ fn strong_drag_is_followed() {
             adaptive.restart();
             adaptive.try_first(first);
             while t < 0.02 {
-                t += adaptive
-                    .advance(&system, t, f64::INFINITY, &mut y)
-                    .unwrap()
-                    .h;
+                t += adaptive.advance(&system, t, f64::INFINITY, &mut y).unwrap().h;
             }
             let root = omega * (zeta * zeta - 1.0f64).sqrt();
             let (slow, fast) = (root - zeta * omega, -root - zeta * omega);
@@ -60,10 +57,7 @@ fn strong_drag_is_followed() {
             let x = 0.7 * (slow * b - fast * a) / (slow - fast);
             let v = 0.7 * slow * fast * (b - a) / (slow - fast);
             let error = (y[1] - x).abs().max((y[7] - v).abs());
-            assert!(
-                error < 1e-5 && size(&y) < 1.0,
-                "{name}, {first} s: {error:e}"
-            );
+            assert!(error < 1e-5 && size(&y) < 1.0, "{name}, {first} s: {error:e}");
         }
     }
 }
@@ -97,10 +91,7 @@ fn wind_in_the_midst_of_a_run_is_refused() {
         let Err(Error::BlowUp(lost)) = run.take_steps(1) else {
             panic!("{name} served the wind");
         };
-        assert_eq!(
-            (lost.cause, run.state()),
-            (Cause::ReadsVelocity, &before[..])
-        );
+        assert_eq!((lost.cause, run.state()), (Cause::ReadsVelocity, &before[..]));
         assert!(lost.to_string().contains("must not depend on the velocity"));
         assert!(run.set_method(method, control).is_err());
         run.set_wind(false);

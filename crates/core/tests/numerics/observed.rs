@@ -25,30 +25,20 @@ fn motion_is_bounded_where_it_is_not_accurate() {
     for name in ["rk4", "symplectic", "verlet", "pefrl", "dop853"] {
         let m = method(name);
         let limit = largest_step(m, &motion.modes).unwrap().unwrap().step;
-        let seen = motion
-            .bounded(m, &Budget::unlimited(), || true)
-            .unwrap()
-            .unwrap();
+        let seen = motion.bounded(m, &Budget::unlimited(), || true).unwrap().unwrap();
         assert!(seen.is_sharp(), "{name}: {seen:?}");
         assert_relative_eq!(seen.held, limit, max_relative = 0.03);
-        let accurate = motion
-            .accurate(m, seen.held, &Budget::unlimited(), || true)
-            .unwrap()
-            .unwrap();
+        let accurate =
+            motion.accurate(m, seen.held, &Budget::unlimited(), || true).unwrap().unwrap();
         assert!(accurate < 0.7 * limit, "{name}: {accurate}");
         if name == "symplectic" {
             assert!(accurate < 0.05 * limit, "{name}: {accurate}");
         }
     }
-    let euler = motion
-        .bounded(method("euler"), &Budget::unlimited(), || true)
-        .unwrap()
-        .unwrap();
+    let euler = motion.bounded(method("euler"), &Budget::unlimited(), || true).unwrap().unwrap();
     assert!(euler.failed < euler.held, "{euler:?}");
-    let implicit = motion
-        .bounded(method("implicit"), &Budget::unlimited(), || true)
-        .unwrap()
-        .unwrap();
+    let implicit =
+        motion.bounded(method("implicit"), &Budget::unlimited(), || true).unwrap().unwrap();
     assert_eq!((implicit.held, implicit.is_open()), (1.0, true));
 }
 
@@ -73,10 +63,7 @@ fn slow_heating_in_motion_is_seen_and_marked() {
     let verlet = method("verlet");
     let limit = largest_step(verlet, &motion.modes).unwrap().unwrap();
     assert!(limit.is_sharp());
-    let seen = motion
-        .bounded(verlet, &Budget::unlimited(), || true)
-        .unwrap()
-        .unwrap();
+    let seen = motion.bounded(verlet, &Budget::unlimited(), || true).unwrap().unwrap();
     assert!(
         (0.3..0.75).contains(&(seen.failed / limit.step)) && seen.failed < seen.held,
         "{seen:?} {limit:?}"
@@ -91,10 +78,7 @@ fn limits_are_seen_on_the_cloth() {
     let cloth = scene_with_grid("cloth", 8, 8);
     let rest = rest(&cloth, || true).unwrap().unwrap();
     let motion = Motion::of(&cloth, || true).unwrap().unwrap();
-    for m in integrators::METHODS
-        .iter()
-        .filter(|m| !m.positions_only() && !m.plain_only())
-    {
+    for m in integrators::METHODS.iter().filter(|m| !m.positions_only() && !m.plain_only()) {
         let predicted = largest_step(m, &rest.modes).unwrap().unwrap();
         if m.needs_springs() {
             // With every step the cloth hangs elsewhere, and moving there is no growth.
@@ -111,23 +95,12 @@ fn limits_are_seen_on_the_cloth() {
         let ratio = seen.held / predicted.step;
         assert!((0.98..1.01).contains(&ratio), "{} at rest: {ratio}", m.name);
         let in_motion = largest_step(m, &motion.modes).unwrap().unwrap();
-        let seen = motion
-            .bounded(m, &Budget::unlimited(), || true)
-            .unwrap()
-            .unwrap();
+        let seen = motion.bounded(m, &Budget::unlimited(), || true).unwrap().unwrap();
         // A fast mode may be over before it has grown. If a limit is not sharp, growth is so slow
         // that the cloth changes its shape first.
-        let most = if seen.is_sharp() && in_motion.is_sharp() {
-            1.25
-        } else {
-            5.0
-        };
+        let most = if seen.is_sharp() && in_motion.is_sharp() { 1.25 } else { 5.0 };
         let ratio = seen.held / in_motion.step;
-        assert!(
-            (0.95..most).contains(&ratio),
-            "{} falling: {ratio}, {seen:?}",
-            m.name
-        );
+        assert!((0.95..most).contains(&ratio), "{} falling: {ratio}, {seen:?}", m.name);
     }
 }
 

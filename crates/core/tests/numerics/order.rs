@@ -13,12 +13,7 @@ fn paths() -> [Path; 2] {
         phase: 0.4,
     };
     let turn = Path::Turn {
-        turn: Turn {
-            axis: Vector3::new(0.6, 0.0, 0.8),
-            rate: 2.0,
-            start: -0.3,
-            end: Some(1.5),
-        },
+        turn: Turn { axis: Vector3::new(0.6, 0.0, 0.8), rate: 2.0, start: -0.3, end: Some(1.5) },
         arm: Vector3::new(0.1, 0.2, 0.1),
         from: Vector3::new(-0.4, -0.2, 0.0),
         to: Vector3::new(0.3, 0.1, 0.0),
@@ -76,10 +71,7 @@ fn every_method_has_its_order() {
                 _ => (4096, 0.05),
             };
             let error = |steps: u64| {
-                distance(
-                    &integrate(&network, m, &y0, 1.0 / steps as f64, steps),
-                    &exact,
-                )
+                distance(&integrate(&network, m, &y0, 1.0 / steps as f64, steps), &exact)
             };
             let order = (error(steps) / error(2 * steps)).log2();
             assert!(
@@ -149,15 +141,7 @@ fn sheets_led_by_their_pins_keep_the_order() {
         }
     }
     let exact = integrate(&network, method("dop853"), &y, 1.0 / 512.0, 512);
-    for name in [
-        "euler",
-        "heun",
-        "midpoint",
-        "rk4",
-        "symplectic",
-        "verlet",
-        "pefrl",
-    ] {
+    for name in ["euler", "heun", "midpoint", "rk4", "symplectic", "verlet", "pefrl"] {
         let m = method(name);
         let error = |steps: u64| {
             let found = integrate(&network, m, &y, 1.0 / steps as f64, steps);

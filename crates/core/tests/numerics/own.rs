@@ -192,13 +192,8 @@ fn a_solver_of_another_library_is_measured_beside_others() {
     assert!(foreign.is_foreign() && foreign.is_adaptive() && !method("rk4").is_foreign());
     assert_eq!(find("Another RK4"), Some(foreign));
     let scene = rotation(3.0);
-    let frames = Frames {
-        until: 2.0,
-        count: 20,
-    };
-    let reference = Reference::finest(&scene, frames, &|| true)
-        .unwrap()
-        .unwrap();
+    let frames = Frames { until: 2.0, count: 20 };
+    let reference = Reference::finest(&scene, frames, &|| true).unwrap().unwrap();
     let of = |method, control| measure(&scene, method, control, &reference, &|| true);
     // Two steps of 0.05 s to each frame.
     let own = of(method("rk4"), Control::Step(0.05)).unwrap().unwrap();
@@ -210,11 +205,7 @@ fn a_solver_of_another_library_is_measured_beside_others() {
     let refused = Simulation::new(scene.clone(), foreign, Control::Tolerance(1e-6));
     let why = refused.err().unwrap().to_string();
     assert!(why.contains("takes no steps"), "{why}");
-    assert!(
-        foreign
-            .check(crate::common::scene("chain").model.system())
-            .is_err()
-    );
+    assert!(foreign.check(crate::common::scene("chain").model.system()).is_err());
     assert!(of(foreign, Control::Step(0.1)).is_err());
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     assert_eq!(largest_step(foreign, &modes).unwrap(), None);
@@ -379,12 +370,7 @@ fn modes_come_from_an_own_jacobian() {
     let counted = calls.clone();
     let exact = Ode::new(2, f).unwrap().with_jacobian(move |_t, y, out| {
         counted.fetch_add(1, Ordering::Relaxed);
-        out.copy_from_slice(&[
-            0.0,
-            1.0,
-            -10.0 * y[0] * y[1] - 1.0,
-            5.0 * (1.0 - y[0] * y[0]),
-        ]);
+        out.copy_from_slice(&[0.0, 1.0, -10.0 * y[0] * y[1] - 1.0, 5.0 * (1.0 - y[0] * y[0])]);
     });
     // l^2 + 15 l + 1 = 0.
     let fastest = f64::midpoint(15.0, (15.0f64 * 15.0 - 4.0).sqrt());
@@ -420,11 +406,7 @@ fn own_methods_are_measured_and_chosen() {
     assert_relative_eq!(error(0.005), exact, max_relative = 0.01);
 
     let among = [heun, euler("own-cheap").register(), method("euler")];
-    let demand = Demand {
-        metric: Metric::State,
-        error: 1e-3,
-        timed: false,
-    };
+    let demand = Demand { metric: Metric::State, error: 1e-3, timed: false };
     let found = choose_among(&among, &scene, &reference, demand, &go_on, |_| {});
     let found = found.unwrap().unwrap();
     assert_eq!(found[0].method.name, "own-heun");

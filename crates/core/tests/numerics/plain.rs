@@ -94,18 +94,9 @@ fn a_planar_orbit_closes() {
     assert!(rms(run.state(), &start) < 1e-10, "{:?}", run.state());
 
     // After a period the exact state is the one at the start.
-    let frames = Frames {
-        until: TAU,
-        count: 64,
-    };
-    let scope = Scope {
-        at_end: true,
-        ..Scope::default()
-    };
-    let precision = Precision {
-        metric: Metric::State,
-        ..Precision::FINEST
-    };
+    let frames = Frames { until: TAU, count: 64 };
+    let scope = Scope { at_end: true, ..Scope::default() };
+    let precision = Precision { metric: Metric::State, ..Precision::FINEST };
     let reference = Reference::new(&kepler(), frames, scope, precision, &|| true);
     let reference = reference.unwrap().unwrap();
     let mut sizes = start.clone();
@@ -121,12 +112,7 @@ fn a_planar_orbit_closes() {
         let mut run = Simulation::new(kepler(), method("rk4"), control).unwrap();
         run.take_steps(steps as u64).unwrap();
         // Errors are over the largest size of each number, here at the frames.
-        let over = |y: &[f64]| {
-            y.iter()
-                .zip(&sizes)
-                .map(|(y, size)| y / size)
-                .collect::<Vec<_>>()
-        };
+        let over = |y: &[f64]| y.iter().zip(&sizes).map(|(y, size)| y / size).collect::<Vec<_>>();
         let own = rms(&over(run.state()), &over(&start));
         let found = errors(&kepler(), "rk4", control, &reference).state;
         // The sizes are as exact as the run that they are seen in.
@@ -148,14 +134,7 @@ fn the_cheapest_method_for_a_planar_orbit_meets_its_error() {
         assert!(candidate.outcome.errors.state <= error);
     }
     // Half of the error takes the cheapest one more work.
-    let half = choose(
-        &scene,
-        &reference,
-        Metric::State,
-        0.5 * error,
-        &|| true,
-        |_| {},
-    );
+    let half = choose(&scene, &reference, Metric::State, 0.5 * error, &|| true, |_| {});
     let [all, half] = [&found, &half.unwrap().unwrap()].map(|found| found[0].outcome.work.total());
     assert!(half >= all, "{half} {all}");
 }
@@ -184,11 +163,8 @@ fn every_method_steps_any_number_of_numbers_or_says_why_not() {
         };
         let scene = scene(f, vec![1.0; n]);
         for method in integrators::METHODS {
-            let control = if method.is_adaptive() {
-                Control::Tolerance(1e-8)
-            } else {
-                Control::Step(1e-3)
-            };
+            let control =
+                if method.is_adaptive() { Control::Tolerance(1e-8) } else { Control::Step(1e-3) };
             let run = Simulation::new(scene.clone(), method, control);
             if method.needs_mechanics() {
                 let why = Refusal::LacksMasses;
@@ -233,15 +209,10 @@ fn plain_numbers_grow_far_and_are_lost_where_they_are_none() {
         let f = |t, _: &[f64], dydt: &mut [f64]| {
             dydt.copy_from_slice(&[0.0, if t > 0.5 { f64::NAN } else { 1.0 }]);
         };
-        let control = if method(name).is_adaptive() {
-            Control::Tolerance(1e-6)
-        } else {
-            Control::Step(0.1)
-        };
+        let control =
+            if method(name).is_adaptive() { Control::Tolerance(1e-6) } else { Control::Step(0.1) };
         let mut run = Simulation::new(scene(f, vec![0.0; 2]), method(name), control).unwrap();
-        let Err(Error::BlowUp(lost)) = run.advance_to(1.0) else {
-            panic!("{name} went on")
-        };
+        let Err(Error::BlowUp(lost)) = run.advance_to(1.0) else { panic!("{name} went on") };
         let named = match lost.cause {
             Cause::NumberNotFinite { index } => index == 1,
             Cause::StepTooSmall { .. } => method(name).is_adaptive(),
@@ -258,11 +229,7 @@ fn what_needs_particles_is_refused() {
     let (scene, go_on) = (kepler(), || true);
     let frames = Frames::new(1.0);
     let of = |scope, metric| {
-        let precision = Precision {
-            metric,
-            uncertainty: 1e-6,
-            max_work: f64::INFINITY,
-        };
+        let precision = Precision { metric, uncertainty: 1e-6, max_work: f64::INFINITY };
         Reference::new(&scene, frames, scope, precision, &go_on).err()
     };
     let says = |error: Option<Error>, words: &str| {
@@ -273,10 +240,7 @@ fn what_needs_particles_is_refused() {
     for metric in [Metric::Position, Metric::Energy, Metric::Strain] {
         says(of(all, metric), "ask for the error of the state");
     }
-    let beyond = Scope {
-        particle: Some(9),
-        ..all
-    };
+    let beyond = Scope { particle: Some(9), ..all };
     says(of(beyond, Metric::State), "the scene has no number 9");
     let reference = reference(&scene, 1.0);
     let chosen = choose(&scene, &reference, Metric::Energy, 1e-3, &go_on, |_| {});
@@ -292,10 +256,7 @@ fn what_needs_particles_is_refused() {
         Model::FirstOrder(Arc::new(Plain(0, |_, _: &[f64], _: &mut [f64]| {}))),
         vec![],
     );
-    says(
-        Simulation::new(none, method("rk4"), Control::Step(0.1)).err(),
-        "one number",
-    );
+    says(Simulation::new(none, method("rk4"), Control::Step(0.1)).err(), "one number");
 }
 
 #[test]
@@ -312,9 +273,7 @@ fn chaos_of_plain_numbers_has_a_horizon() {
         dydt[1] = y[0] * (28.0 - y[2]) - y[1];
         dydt[2] = y[0] * y[1] - 8.0 / 3.0 * y[2];
     };
-    let found = horizon(&scene(lorenz, vec![-8.0, 8.0, 27.0]), 20.0, &|| true)
-        .unwrap()
-        .unwrap();
+    let found = horizon(&scene(lorenz, vec![-8.0, 8.0, 27.0]), 20.0, &|| true).unwrap().unwrap();
     // Its largest exponent is 0.906.
     assert!((0.5..2.5).contains(&found.lyapunov), "{found:?}");
     assert!(!found.buckles);
@@ -378,11 +337,8 @@ fn known_jumps_end_steps() {
         if method.check(known.model.system()).is_err() {
             continue;
         }
-        let control = if method.is_adaptive() {
-            Control::Tolerance(1e-6)
-        } else {
-            Control::Step(0.3)
-        };
+        let control =
+            if method.is_adaptive() { Control::Tolerance(1e-6) } else { Control::Step(0.3) };
         let end = |scene: Scene| {
             let mut run = Simulation::new(scene, method, control).unwrap();
             run.advance_to(9.9).unwrap();
@@ -392,23 +348,14 @@ fn known_jumps_end_steps() {
         assert!((found - 1e-3).abs() < 1e-9, "{}: {found}", method.name);
         // Steps that end at the edges themselves, and a look within a step.
         if !method.is_adaptive() {
-            for (h, at) in [
-                (0.25, 5.2),
-                (0.125, 6.0),
-                (0.0005, 5.0007),
-                (0.1, 5.0004),
-                (0.7, 7.1),
-            ] {
+            for (h, at) in [(0.25, 5.2), (0.125, 6.0), (0.0005, 5.0007), (0.1, 5.0004), (0.7, 7.1)]
+            {
                 let scene = pulse(&[5.0, 5.001]);
                 let mut run = Simulation::new(scene, method, Control::Step(h)).unwrap();
                 run.advance_to(at).unwrap();
                 let right = (at - 5.0).min(1e-3);
                 let found = run.state()[0];
-                assert!(
-                    (found - right).abs() < 1e-9,
-                    "{} {h} {at}: {found}",
-                    method.name
-                );
+                assert!((found - right).abs() < 1e-9, "{} {h} {at}: {found}", method.name);
             }
         }
         let missed = end(pulse(&[]));
@@ -434,18 +381,12 @@ fn reversed_systems_go_back_in_time() {
         let system = Ode::new(2, f).unwrap().with_jacobian(jacobian);
         let system = system.with_jumps(vec![-1.0]).unwrap().reversed();
         let method = method(name);
-        let control = if method.is_adaptive() {
-            Control::Tolerance(1e-9)
-        } else {
-            Control::Step(0.003)
-        };
+        let control =
+            if method.is_adaptive() { Control::Tolerance(1e-9) } else { Control::Step(0.003) };
         let scene = Scene::new("back", system, vec![1.0, 0.0]);
         let mut run = Simulation::new(scene, method, control).unwrap();
         run.advance_to(2.0).unwrap();
         let [grown, jumped] = [run.state()[0] - (-2f64).sin().exp(), run.state()[1] + 6.0];
-        assert!(
-            grown.abs() < 1e-6 && jumped.abs() < 1e-8,
-            "{name}: {grown:e} {jumped:e}"
-        );
+        assert!(grown.abs() < 1e-6 && jumped.abs() < 1e-8, "{name}: {grown:e} {jumped:e}");
     }
 }

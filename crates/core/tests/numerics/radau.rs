@@ -18,9 +18,7 @@ fn run(name: &str, problem: &Problem, relative: f64) -> (Vec<f64>, u32, u64) {
     let mut adaptive = method(name).adaptive(system, tolerance).unwrap();
     let (mut t, mut y, mut steps, mut work) = (0.0, problem.start.clone(), 0, 0);
     while t < problem.until {
-        let taken = adaptive
-            .advance(system, t, problem.until - t, &mut y)
-            .unwrap();
+        let taken = adaptive.advance(system, t, problem.until - t, &mut y).unwrap();
         (t, steps, work) = (t + taken.h, steps + 1, work + taken.work.evaluations);
     }
     (y, steps, work)
@@ -153,9 +151,7 @@ fn references_of_published_problems_are_true_and_cheap() {
         let calls = problem.calls.clone();
         let scene = problem.scene();
         let frames = Frames { until, count: 60 };
-        let reference = Reference::finest(&scene, frames, &|| true)
-            .unwrap()
-            .unwrap();
+        let reference = Reference::finest(&scene, frames, &|| true).unwrap().unwrap();
         let [y, _] = reference.motion(&scene.model, until);
         let squares = y.iter().zip(&end).map(|(a, b)| (a - b).powi(2));
         let error = (squares.sum::<f64>() / end.len() as f64).sqrt();
@@ -179,10 +175,7 @@ fn a_choice_on_a_stiff_system_costs_no_more_the_stiffer_it_is() {
             dydt[0] = -k * (y[0] - t.cos());
         });
         let scene = Scene::new("follower", system.unwrap(), vec![1.0]);
-        let frames = Frames {
-            until: 2.0,
-            count: 60,
-        };
+        let frames = Frames { until: 2.0, count: 60 };
         let reference = Reference::finest(&scene, frames, &|| true).unwrap();
         let reference = reference.unwrap();
         let found = choose(&scene, &reference, Metric::State, 1e-4, &|| true, |_| {});
@@ -194,10 +187,7 @@ fn a_choice_on_a_stiff_system_costs_no_more_the_stiffer_it_is() {
         let mut run = Simulation::new(scene, best.method, best.control).unwrap();
         run.advance_to(2.0).unwrap();
         let (off, count) = (run.state()[0] - exact, calls.load(Ordering::Relaxed));
-        println!(
-            "{k:e}: {} {}, {off:.1e}, {count} calls",
-            best.method.name, best.control
-        );
+        println!("{k:e}: {} {}, {off:.1e}, {count} calls", best.method.name, best.control);
         assert!(best.method.is_implicit() && off.abs() < 1e-4 && count < 50_000);
     }
 }
@@ -240,12 +230,10 @@ fn work_counts_linear_algebra() {
         assert!((10.0 * dear.algebra / many.algebra - 1.0).abs() < 1e-9);
         assert!((many.total() - many.algebra - many.evaluations as f64).abs() < 1e-6);
     }
-    assert!(
-        Ode::new(1, |_: f64, _: &[f64], _: &mut [f64]| ()).is_ok_and(|system| {
-            let none = system.with_evaluation_cost(0.0);
-            none.is_err_and(|why| why.to_string().contains("cost of an evaluation"))
-        })
-    );
+    assert!(Ode::new(1, |_: f64, _: &[f64], _: &mut [f64]| ()).is_ok_and(|system| {
+        let none = system.with_evaluation_cost(0.0);
+        none.is_err_and(|why| why.to_string().contains("cost of an evaluation"))
+    }));
 }
 
 /// Steps that Newton's method cannot solve as a whole, or for which an old Jacobian leads to
@@ -255,11 +243,7 @@ fn implicit_methods_with_fixed_steps_solve_stiff_systems() {
     let mut kinetics = robertson();
     kinetics.until = 40.0;
     // By Radau at a tolerance of 1e-10.
-    kinetics.end = vec![
-        0.715_827_068_720_645,
-        9.185_534_764_481_7e-6,
-        0.284_163_745_744_591,
-    ];
+    kinetics.end = vec![0.715_827_068_720_645, 9.185_534_764_481_7e-6, 0.284_163_745_744_591];
     let oregonator = oregonator();
     for (problem, name, step, most) in [
         (&kinetics, "tr-bdf2", 0.1, 1e-7),
@@ -280,14 +264,9 @@ fn implicit_methods_with_fixed_steps_solve_stiff_systems() {
             let taken = integrator.step(&problem.system, f64::from(k) * step, step, &mut y);
             work += taken.unwrap();
         }
-        let (error, calls) = (
-            relative_error(&y, &problem.end),
-            problem.calls.load(Ordering::Relaxed) - before,
-        );
-        println!(
-            "{name} {step}: {error:.1e}, {} evaluations",
-            work.evaluations
-        );
+        let (error, calls) =
+            (relative_error(&y, &problem.end), problem.calls.load(Ordering::Relaxed) - before);
+        println!("{name} {step}: {error:.1e}, {} evaluations", work.evaluations);
         assert!(error < most, "{name} in steps of {step} s: {error:.1e}");
         // Steps that were given up count, too.
         assert_eq!(work.evaluations, calls, "{name} in steps of {step} s");

@@ -45,14 +45,10 @@ pub fn scene_of(name: &str) -> Scene {
 fn scene(reference: &ReferenceFile) -> Scene {
     let mut network = Network::new(reference.mass.clone()).unwrap();
     for &(i, j, k, rest, damping) in &reference.springs {
-        network
-            .add_spring(spring(i, j, [k, rest, damping]))
-            .unwrap();
+        network.add_spring(spring(i, j, [k, rest, damping])).unwrap();
     }
     for &i in &reference.pinned {
-        network
-            .pin(i, Path::Still(Vector3::from(reference.positions[i])))
-            .unwrap();
+        network.pin(i, Path::Still(Vector3::from(reference.positions[i]))).unwrap();
     }
     network.set_gravity(Vector3::from(reference.gravity));
     network.set_drag(reference.drag).unwrap();
@@ -76,10 +72,8 @@ fn error(name: &str, method: &str, h: f64) -> f64 {
     for state in &reference.states {
         simulation.advance_to(state.time).unwrap();
         assert_eq!(simulation.time(), state.time);
-        worst = worst.max(distance(
-            simulation.state(),
-            &column_major(&state.positions, &state.velocities),
-        ));
+        worst = worst
+            .max(distance(simulation.state(), &column_major(&state.positions, &state.velocities)));
     }
     worst
 }
@@ -120,11 +114,8 @@ fn every_method_meets_the_references_in_the_limit() {
             if method.is_adaptive() {
                 // Formulas of order 5 at most would take too long to be as accurate as pairs of
                 // order 5 or 8.
-                let (tolerance, most) = if method.is_implicit() {
-                    (1e-8, 1e-5)
-                } else {
-                    (1e-12, 1e-9)
-                };
+                let (tolerance, most) =
+                    if method.is_implicit() { (1e-8, 1e-5) } else { (1e-12, 1e-9) };
                 let mut simulation = simulate(&reference, method.name, tolerance);
                 simulation.advance_to(state.time).unwrap();
                 let error = distance(simulation.state(), &expected);

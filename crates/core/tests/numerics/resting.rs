@@ -94,10 +94,7 @@ fn limits_at_rest_are_seen_within_three_percent() {
         found.1.extend(others);
     });
     let (agree, others) = found.into_inner().unwrap();
-    assert!(
-        agree > 75 && 100 * others.len() <= 100 + agree,
-        "{others:?}"
-    );
+    assert!(agree > 75 && 100 * others.len() <= 100 + agree, "{others:?}");
 }
 
 /// With stiff damping and gravity in a drift, velocity Verlet with implicit damping comes to rest

@@ -17,9 +17,7 @@ fn net(seed: u64, unit: f64, around: f64) -> Scene {
             [row + next(0.2) + around, 1.0 + next(0.2), col + next(0.2)].map(|x| unit * x)
         })
         .collect();
-    let velocities: Vec<_> = (0..9)
-        .map(|_| [0, 1, 2].map(|_| unit * next(2.0)))
-        .collect();
+    let velocities: Vec<_> = (0..9).map(|_| [0, 1, 2].map(|_| unit * next(2.0))).collect();
     let masses: Vec<_> = (0..9).map(|_| 1.5 + next(1.0)).collect();
     let mut springs = vec![];
     for i in 0..9usize {
@@ -44,17 +42,14 @@ fn net(seed: u64, unit: f64, around: f64) -> Scene {
 fn run(scene: &Scene, method: &'static Method, tolerance: f64, until: f64) -> Simulation {
     let control = Control::Tolerance(tolerance);
     let mut run = Simulation::new(scene.clone(), method, control).unwrap();
-    run.advance_to(until)
-        .unwrap_or_else(|e| panic!("{}: {e}", method.name));
+    run.advance_to(until).unwrap_or_else(|e| panic!("{}: {e}", method.name));
     run
 }
 
 /// The adaptive methods that support a scene.
 fn adaptive(scene: &Scene) -> impl Iterator<Item = &'static Method> {
     let system = scene.model.system();
-    METHODS
-        .iter()
-        .filter(move |m| m.is_adaptive() && m.check(system).is_ok())
+    METHODS.iter().filter(move |m| m.is_adaptive() && m.check(system).is_ok())
 }
 
 #[test]
@@ -67,12 +62,7 @@ fn the_unit_of_length_does_not_matter() {
                 let found = run(&net(seed, unit, 0.0), method, 1e-6, 1.0);
                 let pairs = expected.state().iter().zip(found.state());
                 let apart: Vec<_> = pairs.map(|(a, b)| a - b / unit).collect();
-                assert!(
-                    size(&apart) == 0.0,
-                    "{} in {unit} m: {:e}",
-                    method.name,
-                    size(&apart)
-                );
+                assert!(size(&apart) == 0.0, "{} in {unit} m: {:e}", method.name, size(&apart));
                 assert_eq!(found.steps(), expected.steps(), "{}", method.name);
             }
         }
@@ -94,11 +84,7 @@ fn the_distance_from_the_origin_does_not_matter() {
             let apart = size(&apart.collect::<Vec<_>>());
             assert!(apart < 1e-7, "{}: {apart:e}", method.name);
             let [fewer, more] = [a.steps().min(b.steps()), a.steps().max(b.steps())];
-            assert!(
-                more - fewer <= 1 + fewer / 100,
-                "{}: {fewer} {more}",
-                method.name
-            );
+            assert!(more - fewer <= 1 + fewer / 100, "{}: {fewer} {more}", method.name);
         }
     }
 }
@@ -160,10 +146,7 @@ fn the_energy_of_a_spinning_brick_stays() {
     for name in ["bdf", "dopri5", "dop853"] {
         let drifts = [1e-4, 1e-6, 1e-8].map(|tolerance| drift(name, tolerance));
         println!("{name}: {drifts:?}");
-        assert!(
-            drifts[0] < 1e-3 && drifts[2] < 0.2 * drifts[0],
-            "{name}: {drifts:?}"
-        );
+        assert!(drifts[0] < 1e-3 && drifts[2] < 0.2 * drifts[0], "{name}: {drifts:?}");
     }
 }
 
@@ -178,11 +161,7 @@ fn a_light_particle_on_a_stiff_spring_is_not_refused() {
         let until = 2e-3;
         let found = run(&scene, method, 1e-7, until).position(1).x;
         let exact = 1.0 + 0.1 * (1e5f64 * until).cos();
-        assert!(
-            (found - exact).abs() < 1e-3,
-            "{}: {found} {exact}",
-            method.name
-        );
+        assert!((found - exact).abs() < 1e-3, "{}: {found} {exact}", method.name);
     }
 }
 

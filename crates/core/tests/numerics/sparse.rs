@@ -102,10 +102,7 @@ fn brusselators_cost_few_evaluations_whatever_their_size() {
     let [bdf, radau, ..] = counts[..] else {
         panic!("four runs");
     };
-    assert!(
-        counts[2] < bdf * 3 / 2 && counts[3] < radau * 3 / 2,
-        "{counts:?}"
-    );
+    assert!(counts[2] < bdf * 3 / 2 && counts[3] < radau * 3 / 2, "{counts:?}");
 }
 
 /// A number that begins to act on a distant one, after the pattern was found, is found too: the
@@ -134,10 +131,7 @@ fn numbers_that_begin_to_act_later_are_found() {
         let followed = mean * (-0.25_f64).exp();
         println!("{name}: {steps} steps, {work:?}");
         assert!((y[N - 1] - followed).abs() < 1e-4, "{name}: {}", y[N - 1]);
-        assert!(
-            steps < 1000 && work.evaluations < 10_000,
-            "{name}: {steps}, {work:?}"
-        );
+        assert!(steps < 1000 && work.evaluations < 10_000, "{name}: {steps}, {work:?}");
     }
 }
 
@@ -155,13 +149,7 @@ fn large_full_systems_are_refused() {
     let is_refusal = |error: &Error| {
         matches!(
             error,
-            Error::Unsupported {
-                why: Refusal::TooDense {
-                    numbers: 1500,
-                    most: 1024
-                },
-                ..
-            }
+            Error::Unsupported { why: Refusal::TooDense { numbers: 1500, most: 1024 }, .. }
         )
     };
     let start: Vec<_> = (0..1500).map(f64::from).collect();
@@ -205,9 +193,7 @@ fn units_change_nothing() {
             }
         }
         assert!(
-            counts
-                .iter()
-                .all(|count| count.abs_diff(counts[0]) * 20 < counts[0]),
+            counts.iter().all(|count| count.abs_diff(counts[0]) * 20 < counts[0]),
             "{counts:?}"
         );
     }
@@ -222,9 +208,7 @@ fn any_sparse_pattern_serves() {
     number.sort_by_key(|k| k * k * 2_654_435_761 % 65_521);
     let mut places = vec![0; N];
     (0..N).for_each(|p| places[number[p]] = p);
-    let start = places
-        .iter()
-        .map(|p| PI * (*p as f64 + 1.0) / (N as f64 + 1.0));
+    let start = places.iter().map(|p| PI * (*p as f64 + 1.0) / (N as f64 + 1.0));
     let start: Vec<_> = start.map(f64::sin).collect();
     let rod = Ode::new(N, move |_: f64, y: &[f64], dydt: &mut [f64]| {
         for (k, rate) in dydt.iter_mut().enumerate() {
@@ -246,28 +230,18 @@ fn any_sparse_pattern_serves() {
         let (y, steps, work) = run(name, &rod, 10.0, start.clone(), 1e-6).unwrap();
         println!("{name}: {steps} steps, {work:?}");
         for (y, start) in y.iter().zip(&start) {
-            assert!(
-                (y - (rate * 10.0).exp() * start).abs() < 1e-5,
-                "{name}: {y}"
-            );
+            assert!((y - (rate * 10.0).exp() * start).abs() < 1e-5, "{name}: {y}");
         }
         assert!(work.evaluations < 4 * N as u64, "{name}: {work:?}");
         let driven = Ode::new(N, drive).unwrap();
         let (y, _, work) = run(name, &driven, 3.0, vec![0.0; N], 1e-6).unwrap();
-        assert!(
-            (y[7] - 6.0).abs() < 1e-9 && work.evaluations < 300,
-            "{work:?}"
-        );
+        assert!((y[7] - 6.0).abs() < 1e-9 && work.evaluations < 300, "{work:?}");
         let grounded = Ode::new(N, ground).unwrap();
         let (y, ..) = run(name, &grounded, 0.01, vec![1.0; N], 1e-6).unwrap();
         // All others are y = exp(-1000 t): y7' = -1001 y7 - 1499 y.
         let all = (-10.0_f64).exp();
         let grounded = all * (1500.0 * (-0.01_f64).exp() - 1499.0);
-        assert!(
-            (y[7] - grounded).abs() < 2e-5,
-            "{name}: {} {grounded}",
-            y[7]
-        );
+        assert!((y[7] - grounded).abs() < 2e-5, "{name}: {} {grounded}", y[7]);
     }
 }
 
@@ -286,9 +260,7 @@ fn differences_are_taken_of_any_number() {
         let mut fixed = method(name).integrator(&decay).unwrap();
         let mut y = [1.0, 1.0];
         for k in 0..2500 {
-            fixed
-                .step(&decay, 0.01 * f64::from(k), 0.01, &mut y)
-                .unwrap();
+            fixed.step(&decay, 0.01 * f64::from(k), 0.01, &mut y).unwrap();
         }
         assert!(y.iter().all(|y| y.is_finite()), "{name}: {y:?}");
         let mut fixed = method(name).integrator(&edge).unwrap();
@@ -300,10 +272,7 @@ fn differences_are_taken_of_any_number() {
         assert!((y[1] - exact).abs() < 1e-4, "{name}: {y:?}");
         let (y, ..) = run(name, &edge, 20.0, vec![1.0], 1e-6).unwrap();
         // Where y = sqrt(1 - y).
-        assert!(
-            (y[0] - 0.5 * (5.0_f64.sqrt() - 1.0)).abs() < 1e-5,
-            "{name}: {y:?}"
-        );
+        assert!((y[0] - 0.5 * (5.0_f64.sqrt() - 1.0)).abs() < 1e-5, "{name}: {y:?}");
     }
 }
 
@@ -359,9 +328,7 @@ fn patterns_and_entries_may_be_given() {
             let value = |i, j| if i == j { -2e3 } else { 1e3 };
             entries.extend(band().map(|(i, j)| (i, j, value(i, j))));
         }),
-        rod()
-            .with_sparsity((0..N).map(|i| (i, i)).collect())
-            .unwrap(),
+        rod().with_sparsity((0..N).map(|i| (i, i)).collect()).unwrap(),
     ];
     let start: Vec<_> = (0..N).map(|k| (0.01 * f64::from(k)).sin()).collect();
     for name in ["bdf", "radau"] {

@@ -51,13 +51,7 @@ fn the_circle_after_1571_steps() {
         ("midpoint", 1.000_502_846_22),
         ("rk4", 0.999_999_955_323),
     ] {
-        let y = integrate(
-            circle.model.system(),
-            method(name),
-            &circle.state,
-            0.04,
-            1571,
-        );
+        let y = integrate(circle.model.system(), method(name), &circle.state, 0.04, 1571);
         let radius = y.iter().map(|y| y * y).sum::<f64>().sqrt();
         assert_relative_eq!(radius, growth(name, 0.04).powi(1571), max_relative = 1e-12);
         assert_relative_eq!(radius, expected, max_relative = 1e-11);
@@ -84,15 +78,9 @@ fn holds_below_and_fails_above(name: &str, zeta: f64, limit: f64) {
 
 fn check(name: &str, network: &Network, zeta: f64, limit: f64) {
     let below = largest(name, network, 0.99 * limit);
-    assert!(
-        below < 100.0,
-        "{name}, zeta {zeta}: {below:e} at 0.99 of the limit {limit}"
-    );
+    assert!(below < 100.0, "{name}, zeta {zeta}: {below:e} at 0.99 of the limit {limit}");
     let above = largest(name, network, 1.01 * limit);
-    assert!(
-        above > 1e3,
-        "{name}, zeta {zeta}: only {above:e} at 1.01 of the limit {limit}"
-    );
+    assert!(above > 1e3, "{name}, zeta {zeta}: only {above:e} at 1.01 of the limit {limit}");
 }
 
 #[test]
@@ -183,14 +171,8 @@ fn euler_at_light_damping() {
         let h: f64 = 0.02 * fraction;
         let steps = |t: f64| (t / h).round() as u64;
         let period = std::f64::consts::TAU;
-        let (early, late) = (
-            amplitude(h, steps(period * 1.0)),
-            amplitude(h, steps(period * 1001.0)),
-        );
-        assert_eq!(
-            late > early,
-            grows,
-            "{early} {late} at {fraction} of the limit"
-        );
+        let (early, late) =
+            (amplitude(h, steps(period * 1.0)), amplitude(h, steps(period * 1001.0)));
+        assert_eq!(late > early, grows, "{early} {late} at {fraction} of the limit");
     }
 }

@@ -23,10 +23,7 @@ impl Line {
     fn new(particles: usize, has_views: bool) -> Self {
         let mut inverse_masses = vec![20.0; particles];
         inverse_masses[0] = 0.0;
-        Self {
-            inverse_masses,
-            has_views,
-        }
+        Self { inverse_masses, has_views }
     }
 
     fn particles(&self) -> usize {
@@ -67,11 +64,7 @@ impl Line {
         let at = |i| row(x, i);
         let mut above = [0.0; 3];
         for i in 0..n {
-            let below = if i + 1 < n {
-                product(difference(at(i), at(i + 1)))
-            } else {
-                [0.0; 3]
-            };
+            let below = if i + 1 < n { product(difference(at(i), at(i + 1))) } else { [0.0; 3] };
             let sum = force(above, below, g);
             (0..3).for_each(|axis| f[axis * n + i] = sum[axis]);
             above = below;
@@ -167,11 +160,7 @@ fn a_system_without_views_is_served_too() {
         for has_views in [true, false] {
             let line = Line::new(7, has_views);
             // A system without views may depend on the velocity.
-            let serves = if has_views {
-                !m.plain_only()
-            } else {
-                !m.positions_only()
-            };
+            let serves = if has_views { !m.plain_only() } else { !m.positions_only() };
             assert_eq!(m.check(&line).is_ok(), serves);
             if m.check(&line).is_err() {
                 continue;
@@ -241,10 +230,7 @@ fn constraints_in_the_forces_are_refused_by_implicit_methods() {
     }
     let system = Constrained(Line::new(3, true));
     for m in integrators::METHODS {
-        let refused = Error::Unsupported {
-            method: m.title,
-            why: Refusal::HoldsConstraints,
-        };
+        let refused = Error::Unsupported { method: m.title, why: Refusal::HoldsConstraints };
         let is_refused = m.check(&system) == Err(refused);
         assert_eq!(is_refused, m.is_implicit() && !m.plain_only(), "{}", m.name);
     }

@@ -32,16 +32,8 @@ fn bodies_reach_their_terminal_speeds() {
     let g = 9.81;
     for size in [1e-3, 1.0, 100.0_f64] {
         let shapes = [
-            (
-                format!("box = [{}, {}, {}]", 0.4 * size, 0.2 * size, 0.3 * size),
-                0.12,
-                1e-9,
-            ),
-            (
-                format!("ball = {}", 0.2 * size),
-                0.04 * std::f64::consts::PI,
-                0.01,
-            ),
+            (format!("box = [{}, {}, {}]", 0.4 * size, 0.2 * size, 0.3 * size), 0.12, 1e-9),
+            (format!("ball = {}", 0.2 * size), 0.04 * std::f64::consts::PI, 0.01),
             (
                 format!("capsule = [{}, {}]", 0.6 * size, 0.1 * size),
                 0.01 * std::f64::consts::PI,
@@ -113,9 +105,7 @@ fn a_vane_turns_into_the_wind() {
 /// Returns the force (N) of the wind on the particles of a scene at the start.
 fn force_of_wind(text: &str) -> Vector3<f64> {
     let scene = described(text);
-    let Model::Network(network) = &scene.model else {
-        panic!("masses and springs")
-    };
+    let Model::Network(network) = &scene.model else { panic!("masses and springs") };
     let n = network.particles();
     let (x, v) = scene.state.split_at(3 * n);
     let mut f = vec![0.0; 3 * n];
@@ -130,11 +120,7 @@ fn a_jelly_has_the_drag_of_its_area_and_so_has_a_cloth() {
     let [density, drag] = AIR;
     let u = 5.0;
     let jelly = "[[jelly]]\ngrid = [4, 3, 5]\nsize = [0.6, 0.4, 0.9]\nmass = 0.01\nstiffness = [50, 30, 20]\nat = [0, 1, 0]\n";
-    for (velocity, area) in [
-        ([u, 0.0, 0.0], 0.36),
-        ([0.0, -u, 0.0], 0.54),
-        ([0.0, 0.0, u], 0.24),
-    ] {
+    for (velocity, area) in [([u, 0.0, 0.0], 0.36), ([0.0, -u, 0.0], 0.54), ([0.0, 0.0, u], 0.24)] {
         let force = force_of_wind(&(wind(velocity) + jelly));
         let expected = Vector3::from(velocity) * (0.5 * density * drag * area * u);
         assert_relative_eq!(force, expected, max_relative = 1e-9);
@@ -211,11 +197,7 @@ fn fans_of_all_sizes_push_a_plate_where_they_blow() {
         let (columns, rows) = (1414, 707);
         for k in 0..columns * rows {
             let share = |k: usize, count: usize| (k as f64 + 0.5) / count as f64 - 0.5;
-            let place = [
-                2.0 * share(k % columns, columns),
-                share(k / columns, rows),
-                0.0,
-            ];
+            let place = [2.0 * share(k % columns, columns), share(k / columns, rows), 0.0];
             let pressure = 0.5 * density * drag * squared_speed(at, radii, place);
             let part = Vector3::z() * (pressure * 2.0 / (columns * rows) as f64);
             force += part;
@@ -265,10 +247,7 @@ fn a_plate_that_spins_in_still_air_has_the_drag_of_each_of_its_points() {
     let still = wind([0.0; 3]).replace("lift = 0.7", "lift = 0");
     let rate = 3.0;
     for parts in PLATES {
-        for (spin, [a, b]) in [
-            ([0.0, rate, 0.0], [2.0, 1.0_f64]),
-            ([rate, 0.0, 0.0], [1.0, 2.0]),
-        ] {
+        for (spin, [a, b]) in [([0.0, rate, 0.0], [2.0, 1.0_f64]), ([rate, 0.0, 0.0], [1.0, 2.0])] {
             let [force, torque] =
                 wrench(&(still.clone() + &plate(parts) + &format!("spin = {spin:?}\n")));
             let exact = -density * drag * rate * b * a.powi(4) / 64.0;
@@ -292,12 +271,7 @@ fn drag_damps_speed_and_spin_alike() {
         let mut run = Simulation::new(described(&text), method, method.control(1e-3)).unwrap();
         let momenta = |run: &Simulation| {
             let (n, v) = (run.particles(), run.velocities());
-            let turning = run
-                .model()
-                .network()
-                .unwrap()
-                .rotation(0, run.state())
-                .momentum;
+            let turning = run.model().network().unwrap().rotation(0, run.state()).momentum;
             [Vector3::from_fn(|axis, _| v[axis * n]), turning]
         };
         let before = momenta(&run);

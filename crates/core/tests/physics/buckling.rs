@@ -18,10 +18,8 @@ const STRIP: Buckling = Buckling {
     damping: 0.0,
 };
 /// Strip that buckles when it is shortened by a tenth.
-const SOFT: Buckling = Buckling {
-    compression: 12.773_223_695_382_405 * STRIP.bending / (0.7 * 0.7 * 0.07),
-    ..STRIP
-};
+const SOFT: Buckling =
+    Buckling { compression: 12.773_223_695_382_405 * STRIP.bending / (0.7 * 0.7 * 0.07), ..STRIP };
 
 fn network(buckling: Buckling) -> Network {
     let mut network = Network::new(vec![1.0; 2]).unwrap();
@@ -62,11 +60,7 @@ fn the_push_of_an_arc_is_that_of_its_energy() {
 fn a_strip_is_straight_until_its_arc_would_push_less() {
     let (c, r) = (SOFT.compression, SOFT.rest_length);
     for share in [1.0, 0.999, 0.95, 0.9001] {
-        assert_relative_eq!(
-            pull(SOFT, share * r),
-            c * (share * r - r),
-            max_relative = 1e-12
-        );
+        assert_relative_eq!(pull(SOFT, share * r), c * (share * r - r), max_relative = 1e-12);
     }
     for share in [0.8999, 0.5, 0.2] {
         assert_eq!(pull(SOFT, share * r), pull(STRIP, share * r));
@@ -128,9 +122,7 @@ fn energy_is_conserved() {
         let (mut bent, mut drift): (f64, f64) = (1.0, 0.0);
         for _ in 0..100 {
             y = integrate(&network, method(name), &y, 0.0005, 100);
-            let length = (0..3)
-                .map(|a| (y[2 * a] - y[2 * a + 1]).powi(2))
-                .sum::<f64>();
+            let length = (0..3).map(|a| (y[2 * a] - y[2 * a + 1]).powi(2)).sum::<f64>();
             bent = bent.min(length.sqrt() / 0.7);
             drift = drift.max((energy(&y).total() - before).abs() / before);
         }
@@ -146,19 +138,13 @@ fn couplings_are_the_symmetric_part_of_the_differential() {
         let l = share * 0.7;
         let x = [0.0, 0.6 * l, 0.0, 0.8 * l, 0.0, 0.0];
         let (d, zero) = ([0.3, -0.2, 0.5, 0.7, -0.1, 0.4], [0.0; 6]);
-        let (dx, dv) = if damping > 0.0 {
-            (&zero, &d)
-        } else {
-            (&d, &zero)
-        };
+        let (dx, dv) = if damping > 0.0 { (&zero, &d) } else { (&d, &zero) };
         let mut df = vec![0.0; 6];
         network.force_differential(0.0, &x, &zero, dx, dv, &mut df);
         let mut sum = vec![0.0; 6];
         let mut count = 0;
         network.couplings(0.0, &x, false, &mut |coupling| {
-            let Coupling::Axial(c) = coupling else {
-                panic!("springs act along their length")
-            };
+            let Coupling::Axial(c) = coupling else { panic!("springs act along their length") };
             count += 1;
             assert!(c.along >= 0.0);
             let e: [f64; 3] = std::array::from_fn(|a| d[2 * a] - d[2 * a + 1]);
@@ -242,12 +228,9 @@ fn turns(run: &Simulation) -> Vec<f64> {
 #[test]
 fn a_compressed_strip_buckles_to_one_side_in_a_smooth_arch() {
     let mut shapes = vec![];
-    for (name, step) in [
-        ("implicit", 0.01),
-        ("tr-bdf2", 0.005),
-        ("rk4", 0.0005),
-        ("verlet", 0.0005),
-    ] {
+    for (name, step) in
+        [("implicit", 0.01), ("tr-bdf2", 0.005), ("rk4", 0.0005), ("verlet", 0.0005)]
+    {
         let mut run = Simulation::new(strip(), method(name), method(name).control(step)).unwrap();
         let mut roughest: f64 = 0.0;
         while run.time() < 8.0 {
@@ -262,15 +245,9 @@ fn a_compressed_strip_buckles_to_one_side_in_a_smooth_arch() {
             }
         }
         let turns = turns(&run);
-        println!(
-            "{name}: roughest {roughest:.3}, top {:.4}, turns {turns:.3?}",
-            run.position(5).y
-        );
+        println!("{name}: roughest {roughest:.3}, top {:.4}, turns {turns:.3?}", run.position(5).y);
         // The compressed strip bows upwards everywhere, and most in the middle.
-        assert!(
-            turns.iter().all(|turn| *turn < -0.1 && *turn > -0.4),
-            "{name}"
-        );
+        assert!(turns.iter().all(|turn| *turn < -0.1 && *turn > -0.4), "{name}");
         assert!(turns[..5].is_sorted_by(|a, b| a >= b), "{name}");
         // The strip bows smoothly and does not fold.
         assert!(roughest < 0.1, "{name}: {roughest}");
@@ -303,10 +280,7 @@ fn strips_are_springs_to_those_who_ask() {
     assert_eq!((listed.len(), listed[0].kind), (1, SpringKind::Bend));
     assert_eq!(listed[0].law.rest_length, STRIP.rest_length);
     assert!(!network.kick_reads_velocity());
-    let damped = Buckling {
-        damping: 0.1,
-        ..STRIP
-    };
+    let damped = Buckling { damping: 0.1, ..STRIP };
     network.add_buckling(damped).unwrap();
     assert!(network.kick_reads_velocity());
     assert_eq!(network.forces_in_use(), ["buckling", "spring damping"]);
@@ -324,21 +298,12 @@ fn a_sheet_may_have_strips() {
     let (x, v) = scene.state.split_at(scene.state.len() / 2);
     let (mut without, mut with) = (vec![0.0; x.len()], vec![0.0; x.len()]);
     network.forces(0.0, x, v, &mut without);
-    let strip = Buckling {
-        i: 7,
-        j: 9,
-        rest_length: 3.0,
-        ..STRIP
-    };
+    let strip = Buckling { i: 7, j: 9, rest_length: 3.0, ..STRIP };
     network.add_buckling(strip).unwrap();
     network.forces(0.0, x, v, &mut with);
     let change: Vec<f64> = with.iter().zip(&without).map(|(a, b)| a - b).collect();
     let length = (0..3).map(|a| (x[30 * a + 7] - x[30 * a + 9]).powi(2));
-    let alone = Buckling {
-        i: 0,
-        j: 1,
-        ..strip
-    };
+    let alone = Buckling { i: 0, j: 1, ..strip };
     let expected = pull(alone, length.sum::<f64>().sqrt()).abs();
     assert!(expected > 0.1);
     for i in 0..30 {
@@ -355,46 +320,22 @@ fn strips_that_make_no_sense_are_refused() {
     for wrong in [
         Buckling { j: 2, ..STRIP },
         Buckling { j: 0, ..STRIP },
-        Buckling {
-            rest_length: 0.0,
-            ..STRIP
-        },
-        Buckling {
-            bending: 0.0,
-            ..STRIP
-        },
-        Buckling {
-            bending: f64::NAN,
-            ..STRIP
-        },
-        Buckling {
-            compression: f64::INFINITY,
-            ..STRIP
-        },
-        Buckling {
-            tension: -1.0,
-            ..STRIP
-        },
-        Buckling {
-            damping: -1.0,
-            ..STRIP
-        },
+        Buckling { rest_length: 0.0, ..STRIP },
+        Buckling { bending: 0.0, ..STRIP },
+        Buckling { bending: f64::NAN, ..STRIP },
+        Buckling { compression: f64::INFINITY, ..STRIP },
+        Buckling { tension: -1.0, ..STRIP },
+        Buckling { damping: -1.0, ..STRIP },
     ] {
         assert!(network.add_buckling(wrong).is_err(), "{wrong:?}");
     }
-    let weak = Buckling {
-        compression: 1.0,
-        ..STRIP
-    };
+    let weak = Buckling { compression: 1.0, ..STRIP };
     let error = network.add_buckling(weak).unwrap_err().to_string();
     assert!(error.contains("at least 23.01"), "{error}");
     assert_eq!(network.buckling().count(), 0);
     // The weakest strip that can buckle: where the ends meet, it pushes equally straight and bent.
     let least = 4.0 * std::f64::consts::PI.powi(2) * 0.2 / 0.343;
-    let weakest = Buckling {
-        compression: least * (1.0 + 1e-12),
-        ..STRIP
-    };
+    let weakest = Buckling { compression: least * (1.0 + 1e-12), ..STRIP };
     network.add_buckling(weakest).unwrap();
     assert!(pull(weakest, 1e-9).is_finite());
 }

@@ -10,10 +10,7 @@ const HALVES: Vector3<f64> = Vector3::new(1.0, 0.6, 0.8);
 const TURN: Vector3<f64> = Vector3::new(0.4, -1.1, 0.7);
 const ENDS: [Vector3<f64>; 2] = [Vector3::new(-1.0, 0.2, 0.1), Vector3::new(0.7, -0.3, 0.9)];
 const RADIUS: f64 = 0.4;
-const CAPSULE: Shape = Shape::Capsule {
-    ends: ENDS,
-    radius: RADIUS,
-};
+const CAPSULE: Shape = Shape::Capsule { ends: ENDS, radius: RADIUS };
 
 fn with_box(path: Path) -> Network {
     let mut network = Network::new(vec![1.0]).unwrap();
@@ -24,9 +21,7 @@ fn with_box(path: Path) -> Network {
 
 fn with_capsule(path: Path) -> Network {
     let mut network = Network::new(vec![1.0]).unwrap();
-    network
-        .add_obstacle(Obstacle::smooth(CAPSULE, path))
-        .unwrap();
+    network.add_obstacle(Obstacle::smooth(CAPSULE, path)).unwrap();
     network
 }
 
@@ -35,16 +30,8 @@ fn resolved(network: &Network, t: f64, x: Vector3<f64>, v: Vector3<f64>) -> [Vec
     let mut y = [x.x, x.y, x.z, v.x, v.y, v.z];
     let (y0, h) = (y, 0.01);
     let (t, y0) = (t - h, &y0);
-    resolve(
-        network.obstacles(),
-        network.inverse_masses(),
-        &Step { t, h, y0 },
-        &mut y,
-    );
-    [
-        Vector3::from_column_slice(&y[..3]),
-        Vector3::from_column_slice(&y[3..]),
-    ]
+    resolve(network.obstacles(), network.inverse_masses(), &Step { t, h, y0 }, &mut y);
+    [Vector3::from_column_slice(&y[..3]), Vector3::from_column_slice(&y[3..])]
 }
 
 /// Points of a grid inside and around an obstacle at the centre.
@@ -136,12 +123,7 @@ fn a_particle_in_a_capsule_is_put_on_the_nearest_point_and_one_outside_stays() {
 #[test]
 fn contact_takes_the_inward_part_of_the_relative_velocity_and_nothing_else() {
     let velocity = Vector3::new(2.0, -1.0, 0.5);
-    let path = Path::Line {
-        from: CENTER - velocity,
-        to: CENTER + velocity,
-        start: 0.0,
-        end: 2.0,
-    };
+    let path = Path::Line { from: CENTER - velocity, to: CENTER + velocity, start: 0.0, end: 2.0 };
     let mut hit = 0;
     for (k, p) in points().enumerate() {
         for network in [with_box(path), with_capsule(path)] {
@@ -169,12 +151,7 @@ fn contact_takes_the_inward_part_of_the_relative_velocity_and_nothing_else() {
 #[test]
 fn what_has_no_nearest_point_is_put_somewhere_all_the_same() {
     let turn = Rotation3::from_scaled_axis(TURN);
-    let [x, v] = resolved(
-        &with_box(Path::Still(CENTER)),
-        0.0,
-        CENTER,
-        Vector3::new(1.0, 2.0, 3.0),
-    );
+    let [x, v] = resolved(&with_box(Path::Still(CENTER)), 0.0, CENTER, Vector3::new(1.0, 2.0, 3.0));
     // The nearest faces are those perpendicular to the second edge.
     assert_relative_eq!(x, CENTER + turn * Vector3::y() * HALVES.y, epsilon = 1e-14);
     assert!(v.iter().all(|v| v.is_finite()));
@@ -191,9 +168,7 @@ fn what_has_no_nearest_point_is_put_somewhere_all_the_same() {
         let mut network = Network::new(vec![1.0]).unwrap();
         let radius = RADIUS;
         let shape = Shape::Capsule { ends, radius };
-        network
-            .add_obstacle(Obstacle::smooth(shape, still))
-            .unwrap();
+        network.add_obstacle(Obstacle::smooth(shape, still)).unwrap();
         let [x, v] = resolved(&network, 0.0, Vector3::zeros(), -expected);
         assert_relative_eq!(x, RADIUS * expected, epsilon = 1e-15);
         assert_relative_eq!(v, Vector3::zeros(), epsilon = 1e-15);
@@ -205,34 +180,21 @@ fn obstacles_without_a_size_are_refused() {
     let path = Path::Still(CENTER);
     for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(Shape::turned_box(Vector3::new(1.0, wrong, 1.0), TURN).is_err());
-        for shape in [
-            Shape::Sphere { radius: wrong },
-            Shape::Capsule {
-                ends: ENDS,
-                radius: wrong,
-            },
-        ] {
+        for shape in [Shape::Sphere { radius: wrong }, Shape::Capsule { ends: ENDS, radius: wrong }]
+        {
             let mut network = Network::new(vec![1.0]).unwrap();
             let obstacle = Obstacle::smooth(shape.clone(), path);
             assert!(network.add_obstacle(obstacle).is_err());
-            network
-                .add_obstacle(Obstacle::smooth(Shape::Floor, path))
-                .unwrap();
+            network.add_obstacle(Obstacle::smooth(Shape::Floor, path)).unwrap();
             assert!(network.reshape_obstacle(0, shape).is_err());
             assert_eq!(network.obstacles()[0].shape, Shape::Floor);
         }
     }
     let nowhere = Vector3::new(0.0, f64::NAN, 0.0);
     let error = Shape::turned_box(HALVES, nowhere).unwrap_err().to_string();
-    assert_eq!(
-        error,
-        "the turn of a box must be three finite numbers, not 0, NaN, 0"
-    );
+    assert_eq!(error, "the turn of a box must be three finite numbers, not 0, NaN, 0");
     for friction in [-0.1, f64::NAN, f64::INFINITY] {
-        let obstacle = Obstacle {
-            friction,
-            ..Obstacle::smooth(CAPSULE, path)
-        };
+        let obstacle = Obstacle { friction, ..Obstacle::smooth(CAPSULE, path) };
         let mut network = Network::new(vec![1.0]).unwrap();
         let error = network.add_obstacle(obstacle).unwrap_err().to_string();
         assert!(error.starts_with("the friction of an obstacle must be"));
@@ -270,10 +232,7 @@ fn a_box_has_the_triangles_and_edges_of_its_surface() {
         });
         assert!(volumes.clone().all(|volume| volume > 0.0));
         assert!((volumes.sum::<f64>() - 8.0 * HALVES.product()).abs() < 1e-14);
-        let lengths = found
-            .edges
-            .iter()
-            .map(|e| (corner(e[1]) - corner(e[0])).norm());
+        let lengths = found.edges.iter().map(|e| (corner(e[1]) - corner(e[0])).norm());
         assert!((lengths.sum::<f64>() - 8.0 * HALVES.sum()).abs() < 1e-14);
         assert_eq!((found.triangles.len(), found.radius), (12, 0.0));
         let closed = ClosedMesh::new(found.points, found.triangles).unwrap();

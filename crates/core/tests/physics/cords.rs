@@ -83,12 +83,9 @@ fn the_differential_is_the_slope_of_the_forces() {
         "[particles]\nmass = 1\ntension_only = true\npositions = [[0, 0, 0], [1, 0, 0]]\nsprings = [[0, 1, 10, 1, 3]]\n",
     );
     let pair = pair.model.network().unwrap();
-    for (length, rate, pull) in [
-        (0.9, 5.0, 0.0),
-        (1.1, 0.5, 2.5),
-        (1.1, -1.0, 0.0),
-        (1.0, 1.0, 0.0),
-    ] {
+    for (length, rate, pull) in
+        [(0.9, 5.0, 0.0), (1.1, 0.5, 2.5), (1.1, -1.0, 0.0), (1.0, 1.0, 0.0)]
+    {
         let mut f = [0.0; 6];
         pair.forces(
             0.0,
@@ -96,9 +93,6 @@ fn the_differential_is_the_slope_of_the_forces() {
             &[0.0, rate, 0.0, 0.0, 0.0, 0.0],
             &mut f,
         );
-        assert!(
-            (f[0] - pull).abs() < 1e-12 && f[0] == -f[1],
-            "{length} {rate}: {f:?}"
-        );
+        assert!((f[0] - pull).abs() < 1e-12 && f[0] == -f[1], "{length} {rate}: {f:?}");
     }
 }

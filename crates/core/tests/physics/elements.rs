@@ -54,11 +54,8 @@ fn differentials_match_central_differences() {
                 network.forces(0.7, &moved[..half], &moved[half..], &mut f);
                 f
             };
-            let difference: Vec<f64> = at(1.0)
-                .iter()
-                .zip(at(-1.0))
-                .map(|(a, b)| (a - b) / (2.0 * e))
-                .collect();
+            let difference: Vec<f64> =
+                at(1.0).iter().zip(at(-1.0)).map(|(a, b)| (a - b) / (2.0 * e)).collect();
             let error = distance(&df, &difference) / size(&difference);
             assert!(error < 1e-6, "{name}: {error:e}");
         }
@@ -70,9 +67,7 @@ fn the_product_with_the_matrix_is_that_of_its_couplings() {
     for (name, network, y) in networks() {
         let n = network.particles();
         let (x, v) = y.split_at(3 * n);
-        let free: Vec<f64> = (0..n)
-            .map(|i| f64::from(u8::from(!network.is_pinned(i))))
-            .collect();
+        let free: Vec<f64> = (0..n).map(|i| f64::from(u8::from(!network.is_pinned(i)))).collect();
         let p: Vec<f64> = v.iter().enumerate().map(|(k, v)| v * free[k % n]).collect();
         for clamped in [false, true] {
             let matrix = Matrix {
@@ -92,9 +87,7 @@ fn the_product_with_the_matrix_is_that_of_its_couplings() {
                 (0..3 * n).map(|k| network.masses()[k % n] * p[k]).collect();
             let mut visited = 0;
             network.couplings(0.0, x, clamped, &mut |coupling| {
-                let Coupling::Axial(c) = coupling else {
-                    panic!("springs act along their length")
-                };
+                let Coupling::Axial(c) = coupling else { panic!("springs act along their length") };
                 visited += 1;
                 assert!(!clamped || c.across >= 0.0);
                 if visited > count {
@@ -111,10 +104,7 @@ fn the_product_with_the_matrix_is_that_of_its_couplings() {
                     expected[axis * n + c.j] -= force;
                 }
             });
-            expected
-                .iter_mut()
-                .enumerate()
-                .for_each(|(k, out)| *out *= free[k % n]);
+            expected.iter_mut().enumerate().for_each(|(k, out)| *out *= free[k % n]);
             let error = distance(&out, &expected) / size(&expected);
             assert!(error < 1e-12, "{name}, {clamped}: {error:e}");
         }

@@ -84,12 +84,8 @@ fn a_region_that_moves_does_the_same_work() {
 
 #[test]
 fn a_region_turns_its_wind_and_ends_its_turn_between_steps() {
-    let turn = Turn {
-        axis: Vector3::y(),
-        rate: 0.5 * std::f64::consts::PI,
-        start: 1.0,
-        end: Some(2.0),
-    };
+    let turn =
+        Turn { axis: Vector3::y(), rate: 0.5 * std::f64::consts::PI, start: 1.0, end: Some(2.0) };
     let region = Region {
         path: Path::Still(Vector3::new(1.0, 0.0, 0.0)),
         turn: Some(turn),
@@ -113,13 +109,7 @@ fn a_region_turns_its_wind_and_ends_its_turn_between_steps() {
         let later = wind.ahead(t).at(0.0, x);
         assert!((later - wind.at(t, x)).norm() < 1e-14);
     }
-    assert!(
-        wind.within(Region {
-            radius: 0.0,
-            ..region
-        })
-        .is_err()
-    );
+    assert!(wind.within(Region { radius: 0.0, ..region }).is_err());
     // The kinks at 1 s and 2 s are met: a tight tolerance agrees with steps that end there.
     let motion = ", turn = { axis = [0, 1, 0], angle = 1.5707963267948966, start = 1, end = 2 }";
     let slow = blown(0.0, 0.0, motion).replace("force = [3, 0, 0]", "force = [0.1, 0, 0]");

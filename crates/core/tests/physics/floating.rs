@@ -88,10 +88,7 @@ fn a_body_and_a_blob_keep_their_momenta() {
         for (a, b) in after.iter().zip(before) {
             assert!((a - b).norm() < 1e-11 * scale, "{a} {b}");
         }
-        assert!(
-            run.velocities()[0] < 0.9 * speed,
-            "the body has hit the blob"
-        );
+        assert!(run.velocities()[0] < 0.9 * speed, "the body has hit the blob");
     }
 }
 

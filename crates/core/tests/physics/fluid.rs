@@ -7,11 +7,7 @@ use crate::networks::Random;
 
 /// A blob of fluid beside a wall, compressed and stirred, in two or three dimensions.
 fn stirred(dimensions: u8, viscosity: f64) -> Scene {
-    let (depth, side) = if dimensions == 3 {
-        (0.4, 0.6)
-    } else {
-        (0.0, 1.0)
-    };
+    let (depth, side) = if dimensions == 3 { (0.4, 0.6) } else { (0.0, 1.0) };
     let text = format!(
         "[[fluid]]
         shape = 'ball'
@@ -186,9 +182,8 @@ const MARTIN_MOYCE: [[f64; 2]; 11] = [
 #[test]
 fn the_front_of_a_dam_break_is_where_it_was_measured() {
     let scene = scene("dam-break");
-    let free: Vec<usize> = (0..scene.model.particles())
-        .filter(|i| !network(&scene).is_pinned(*i))
-        .collect();
+    let free: Vec<usize> =
+        (0..scene.model.particles()).filter(|i| !network(&scene).is_pinned(*i)).collect();
     let mut run = Simulation::new(scene, method("verlet"), Control::Step(5e-4)).unwrap();
     for [time, expected] in MARTIN_MOYCE {
         run.advance_to(time / (2.0_f64 * 9.81).sqrt()).unwrap();
@@ -214,13 +209,9 @@ fn methods_have_their_orders_on_a_smooth_flow() {
         run.state()[..half].to_vec()
     };
     let exact = run("dop853", Control::Tolerance(1e-12));
-    for (name, order) in [
-        ("euler", 1.0),
-        ("heun", 2.0),
-        ("rk4", 4.0),
-        ("verlet", 2.0),
-        ("pefrl", 4.0),
-    ] {
+    for (name, order) in
+        [("euler", 1.0), ("heun", 2.0), ("rk4", 4.0), ("verlet", 2.0), ("pefrl", 4.0)]
+    {
         let error = |steps: f64| distance(&run(name, Control::Step(end / steps)), &exact);
         let slope = (error(8.0) / error(16.0)).log2();
         assert!((slope - order).abs() < 0.35, "{name}: {slope}");
@@ -241,10 +232,7 @@ fn any_number_of_threads_finds_the_same_forces() {
         strain = [1, -2, 1]",
     );
     let run = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let control = Control::Step(1e-3);
             let mut run = Simulation::new(scene.clone(), method("rk4"), control).unwrap();
@@ -261,9 +249,7 @@ fn any_number_of_threads_finds_the_same_forces() {
 /// Free particles of a run.
 fn flowing(run: &Simulation) -> Vec<usize> {
     let network = run.model().network().unwrap();
-    (0..run.particles())
-        .filter(|i| !network.is_pinned(*i))
-        .collect()
+    (0..run.particles()).filter(|i| !network.is_pinned(*i)).collect()
 }
 
 /// A jet in free fall, in metres, millimetres and hundreds of metres: at any time, as much has
@@ -273,13 +259,8 @@ fn flowing(run: &Simulation) -> Vec<usize> {
 fn a_jet_falls_like_a_projectile() {
     for scale in [1.0, 1e-3, 100.0_f64] {
         let pace = scale.sqrt();
-        let [spacing, width, speed, sound, until] = [
-            0.04 * scale,
-            0.2 * scale,
-            2.0 * pace,
-            40.0 * pace,
-            0.5 * pace,
-        ];
+        let [spacing, width, speed, sound, until] =
+            [0.04 * scale, 0.2 * scale, 2.0 * pace, 40.0 * pace, 0.5 * pace];
         let scene = described(&format!(
             "gravity = [0, -10, 0]
             [[fluid]]
@@ -299,23 +280,15 @@ fn a_jet_falls_like_a_projectile() {
             let free = flowing(&run);
             let area = free.len() as f64 * spacing * spacing;
             let expected = speed * width * t;
-            assert!(
-                (area - expected).abs() < 0.51 * spacing * width,
-                "{area} {expected}"
-            );
+            assert!((area - expected).abs() < 0.51 * spacing * width, "{area} {expected}");
             // The first layer has flown all the time since its release.
-            let first = free
-                .iter()
-                .filter(|i| run.scene().state[**i] > -0.6 * spacing);
+            let first = free.iter().filter(|i| run.scene().state[**i] > -0.6 * spacing);
             let places: Vec<_> = first.map(|i| run.position(*i)).collect();
             let mean = places.iter().sum::<Vector3<f64>>() / places.len() as f64;
             let flown = t - 0.5 * spacing / speed;
             let exact = Vector3::new(speed * flown, -5.0 * flown * flown, 0.0);
             assert_eq!(places.len(), 5);
-            assert!(
-                (mean - exact).norm() < 0.01 * exact.norm(),
-                "{mean:?} {exact:?}"
-            );
+            assert!((mean - exact).norm() < 0.01 * exact.norm(), "{mean:?} {exact:?}");
         }
         assert_eq!(flowing(&run).len(), 125);
         assert!(run.gained().is_none());

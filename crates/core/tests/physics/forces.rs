@@ -16,11 +16,7 @@ fn noise(k: usize) -> f64 {
 }
 
 fn shaken(state: &[f64], by: f64) -> Vec<f64> {
-    state
-        .iter()
-        .enumerate()
-        .map(|(k, y)| y + by * noise(k))
-        .collect()
+    state.iter().enumerate().map(|(k, y)| y + by * noise(k)).collect()
 }
 
 fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
@@ -64,9 +60,7 @@ fn networks() -> impl Iterator<Item = (&'static str, Box<Network>, Vec<f64>)> {
     of_scenes.chain(in_the_air.map(|(title, name)| {
         let scene = scene_with_grid(name, 6, 7);
         let mut network = scene.model.network().unwrap().clone();
-        network
-            .set_triangles(scene.grid().unwrap().triangles())
-            .unwrap();
+        network.set_triangles(scene.grid().unwrap().triangles()).unwrap();
         let air = Air::new(1.2, 1.1, 0.7).unwrap();
         let wind = Wind::on_triangles(3, Vector3::new(1.0, 0.5, 4.0), air);
         network.set_wind(Some(wind));
@@ -85,11 +79,7 @@ fn evaluating_twice_gives_the_same_bits() {
         system.eval_f(0.3, &y, &mut a);
         system.eval_f(5.0, &scene.state, &mut b);
         system.eval_f(0.3, &y, &mut b);
-        assert!(
-            a.iter().zip(&b).all(|(a, b)| a.to_bits() == b.to_bits()),
-            "{}",
-            entry.name
-        );
+        assert!(a.iter().zip(&b).all(|(a, b)| a.to_bits() == b.to_bits()), "{}", entry.name);
     }
 }
 
@@ -112,11 +102,8 @@ fn differentials_match_central_differences() {
             network.forces(0.7, &moved[..x.len()], &moved[x.len()..], &mut f);
             f
         };
-        let difference: Vec<f64> = at(1.0)
-            .iter()
-            .zip(at(-1.0))
-            .map(|(a, b)| (a - b) / (2.0 * e))
-            .collect();
+        let difference: Vec<f64> =
+            at(1.0).iter().zip(at(-1.0)).map(|(a, b)| (a - b) / (2.0 * e)).collect();
         let error = distance(&df, &difference) / size(&difference);
         assert!(error < 1e-6, "{name}: {error:e}");
     }
@@ -184,10 +171,7 @@ fn springs_in_no_order_are_put_in_one_and_pull_alike() {
     list.spring_forces(x, v, &mut f);
     sheet.spring_forces(x, v, &mut expected);
     assert!(distance(&f, &expected) < 1e-13 * size(&expected));
-    let wrong = Spring {
-        j: 9 * 14,
-        ..springs[0]
-    };
+    let wrong = Spring { j: 9 * 14, ..springs[0] };
     assert!(list.add_springs([wrong]).is_err());
 }
 
@@ -196,14 +180,7 @@ fn a_spring_of_length_zero_has_no_force() {
     for damping in [0.0, 1.0] {
         let mut network = Network::new(vec![1.0; 2]).unwrap();
         let law = SpringLaw::new(100.0, 0.5, damping).unwrap();
-        network
-            .add_spring(Spring {
-                kind: SpringKind::Structural,
-                i: 0,
-                j: 1,
-                law,
-            })
-            .unwrap();
+        network.add_spring(Spring { kind: SpringKind::Structural, i: 0, j: 1, law }).unwrap();
         let (x, v) = ([0.3; 6], [0.0, 1.0, 0.0, 2.0, 0.0, 3.0]);
         let mut f = [f64::NAN; 6];
         network.forces(0.0, &x, &v, &mut f);
@@ -213,9 +190,7 @@ fn a_spring_of_length_zero_has_no_force() {
 
         let grid = Grid::new(5, 7).unwrap();
         let mut network = Network::new(vec![1.0; grid.particles()]).unwrap();
-        network
-            .add(Sheet::new(grid, 0.1, [100.0, 80.0, 30.0], damping).unwrap())
-            .unwrap();
+        network.add(Sheet::new(grid, 0.1, [100.0, 80.0, 30.0], damping).unwrap()).unwrap();
         let n = 3 * grid.particles();
         let (x, v) = (vec![0.3; n], (0..n).map(|k| k as f64).collect::<Vec<_>>());
         let mut f = vec![f64::NAN; n];
@@ -231,10 +206,7 @@ fn a_fixed_particle_has_no_derivative() {
         network.eval_f(0.2, &y, &mut dydt);
         let n = network.particles();
         for (i, _) in network.pins() {
-            assert!(
-                (0..6).all(|axis| dydt[axis * n + i] == 0.0),
-                "{name}, particle {i}"
-            );
+            assert!((0..6).all(|axis| dydt[axis * n + i] == 0.0), "{name}, particle {i}");
         }
     }
 }
@@ -261,16 +233,8 @@ fn momentum_is_conserved() {
         let end = integrate(&free, method(name), &start, 0.001, 500);
         assert!(distance(&end, &start) > 0.01);
         let (p, l) = momenta(&end);
-        assert!(
-            (p - p0).norm() < 1e-13 * n as f64,
-            "{name}: {:e}",
-            (p - p0).norm()
-        );
-        assert!(
-            (l - l0).norm() < angular_error,
-            "{name}: {:e}",
-            (l - l0).norm()
-        );
+        assert!((p - p0).norm() < 1e-13 * n as f64, "{name}: {:e}", (p - p0).norm());
+        assert!((l - l0).norm() < angular_error, "{name}: {:e}", (l - l0).norm());
     }
 }
 
@@ -281,10 +245,7 @@ fn energy_is_conserved() {
     let scene = scene("mit");
     let mut network = scene.model.network().unwrap().clone();
     network.set_drag(0.0).unwrap();
-    let scene = a3_core::Scene {
-        model: Model::Network(Box::new(network)),
-        ..scene
-    };
+    let scene = a3_core::Scene { model: Model::Network(Box::new(network)), ..scene };
     let drift = |name: &str, h: f64, until: f64| {
         let mut run =
             Simulation::new(scene.clone(), method(name), method(name).control(h)).unwrap();
@@ -297,11 +258,8 @@ fn energy_is_conserved() {
     assert!(drift("rk4", 0.001, 2.0) < 1e-5);
     // The error is of second order and has no trend: over ten times the time it grows only a few
     // times.
-    let (short, finer, long) = (
-        drift("verlet", 0.002, 2.0),
-        drift("verlet", 0.001, 2.0),
-        drift("verlet", 0.002, 20.0),
-    );
+    let (short, finer, long) =
+        (drift("verlet", 0.002, 2.0), drift("verlet", 0.001, 2.0), drift("verlet", 0.002, 20.0));
     assert!(short < 0.05 && finer < 0.5 * short, "{short:e} {finer:e}");
     assert!(long < 0.2, "{long:e}");
 }
@@ -312,19 +270,9 @@ fn energy_is_conserved() {
 fn energy_by_kind() {
     let mut network = Network::new(vec![2.0; 2]).unwrap();
     let law = SpringLaw::new(100.0, 0.5, 0.0).unwrap();
-    network
-        .add_spring(Spring {
-            kind: SpringKind::Structural,
-            i: 0,
-            j: 1,
-            law,
-        })
-        .unwrap();
+    network.add_spring(Spring { kind: SpringKind::Structural, i: 0, j: 1, law }).unwrap();
     network.set_gravity(Vector3::new(0.0, -10.0, 0.0));
-    let energy = network.energy(
-        &[0.0, 1.0, 4.0, 4.0, 0.0, 0.0],
-        &[3.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    );
+    let energy = network.energy(&[0.0, 1.0, 4.0, 4.0, 0.0, 0.0], &[3.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
     assert_relative_eq!(energy.elastic, 12.5);
     assert_relative_eq!(energy.kinetic, 9.0);
     assert_relative_eq!(energy.gravitational, 160.0);
@@ -340,8 +288,5 @@ fn the_wind_pushes() {
     run.set_wind(true);
     run.advance_to(41.5).unwrap();
     assert!(run.positions().column(2).mean() > calm + 0.05);
-    assert_eq!(
-        Wind::new(3, Vector3::zeros()).at(1.0, [0.0; 3]),
-        Vector3::zeros()
-    );
+    assert_eq!(Wind::new(3, Vector3::zeros()).at(1.0, [0.0; 3]), Vector3::zeros());
 }

@@ -78,9 +78,7 @@ fn mean_velocity(run: &Simulation) -> Vector3<f64> {
 fn moved(run: &Simulation, from: &[f64]) -> f64 {
     let n = run.particles();
     let from = |i: usize| Vector3::new(from[i], from[n + i], from[2 * n + i]);
-    (0..n)
-        .map(|i| (run.position(i) - from(i)).norm())
-        .fold(0.0, f64::max)
+    (0..n).map(|i| (run.position(i) - from(i)).norm()).fold(0.0, f64::max)
 }
 
 #[test]
@@ -132,14 +130,7 @@ fn with_little_friction_it_slides_as_coulomb_says() {
 
 #[test]
 fn a_block_stands_on_a_slope_or_slides_down() {
-    for name in [
-        "rk4",
-        "verlet",
-        "pefrl",
-        "dopri5",
-        "implicit-midpoint",
-        "trbdf2",
-    ] {
+    for name in ["rk4", "verlet", "pefrl", "dopri5", "implicit-midpoint", "trbdf2"] {
         let method = method(name);
         let setting = if method.is_adaptive() { 1e-4 } else { 0.002 };
         let mut run = Simulation::new(block(0.6), method, method.control(setting)).unwrap();
@@ -184,10 +175,8 @@ fn conveyors() -> [Obstacle; 2] {
         end: 50.0,
     };
     let shape = Shape::turned_box(Vector3::new(20.0, 1.0, 1.0), Vector3::zeros()).unwrap();
-    [(shape, -1.0), (Shape::Floor, 0.0)].map(|(shape, height)| Obstacle {
-        friction: 0.5,
-        ..Obstacle::smooth(shape, path(height))
-    })
+    [(shape, -1.0), (Shape::Floor, 0.0)]
+        .map(|(shape, height)| Obstacle { friction: 0.5, ..Obstacle::smooth(shape, path(height)) })
 }
 
 /// A conveyor accelerates a particle by mu g until the particle sticks to it.
@@ -215,10 +204,7 @@ fn a_conveyor_carries_a_particle_along() {
             run.advance_to(5.0).unwrap();
             run.take_steps(1).unwrap();
             let way = run.position(0).x - at;
-            assert!(
-                (way - 2.0 * (run.time() - before)).abs() < 1e-10,
-                "{name}: {way}"
-            );
+            assert!((way - 2.0 * (run.time() - before)).abs() < 1e-10, "{name}: {way}");
         }
     }
 }
@@ -227,21 +213,12 @@ fn a_conveyor_carries_a_particle_along() {
 /// of the impact.
 #[test]
 fn after_an_impact_a_particle_stops_where_it_should() {
-    let floor = Obstacle {
-        friction: 0.5,
-        ..Obstacle::smooth(Shape::Floor, Path::Still(Vector3::zeros()))
-    };
+    let floor =
+        Obstacle { friction: 0.5, ..Obstacle::smooth(Shape::Floor, Path::Still(Vector3::zeros())) };
     // The particle falls for 0.1 s and moves 0.1 m along x in that time. Friction stops it at once.
-    let (x, v) = (
-        Vector3::new(0.0, 0.3 + 0.5 * 9.81 * 0.01, 0.0),
-        Vector3::new(1.0, -3.0, 0.0),
-    );
+    let (x, v) = (Vector3::new(0.0, 0.3 + 0.5 * 9.81 * 0.01, 0.0), Vector3::new(1.0, -3.0, 0.0));
     for h in [0.07, 0.013, 0.001] {
-        let run = Simulation::new(
-            particle(floor.clone(), x, v),
-            method("rk4"),
-            Control::Step(h),
-        );
+        let run = Simulation::new(particle(floor.clone(), x, v), method("rk4"), Control::Step(h));
         let mut run = run.unwrap();
         run.advance_to(0.5).unwrap();
         assert_eq!(run.velocities(), [0.0; 3]);
@@ -290,10 +267,7 @@ fn contact_takes_energy_and_gives_none() {
     let (mut met, mut stuck, mut slid) = (0, 0, 0);
     for shape in shapes {
         for friction in [0.0, 0.2, 1.0, 100.0] {
-            let obstacle = Obstacle {
-                friction,
-                ..Obstacle::smooth(shape.clone(), place)
-            };
+            let obstacle = Obstacle { friction, ..Obstacle::smooth(shape.clone(), place) };
             for k in 0..500 {
                 let y0: Vec<f64> = (0..6).map(|a| number(6 * k + a)).collect();
                 let h = 0.1;
@@ -317,10 +291,7 @@ fn contact_takes_energy_and_gives_none() {
                 // Without friction, the velocity changes along the normal only.
                 let mut smooth = free.clone();
                 resolve(
-                    &[Obstacle {
-                        friction: 0.0,
-                        ..obstacle.clone()
-                    }],
+                    &[Obstacle { friction: 0.0, ..obstacle.clone() }],
                     &[2.0],
                     &step,
                     &mut smooth,
@@ -340,10 +311,7 @@ fn contact_takes_energy_and_gives_none() {
             }
         }
     }
-    assert!(
-        met > 1000 && stuck > 100 && slid > 100,
-        "{met} {stuck} {slid}"
-    );
+    assert!(met > 1000 && stuck > 100 && slid > 100, "{met} {stuck} {slid}");
 }
 
 /// Friction of 0 gives the same bits as no friction.

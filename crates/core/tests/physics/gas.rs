@@ -12,16 +12,8 @@ use crate::common::{method, state_random};
 const EDGE: f64 = 0.5;
 const STIFFNESS: f64 = 40.0;
 
-const TRIANGLES: [[u32; 3]; 8] = [
-    [0, 2, 4],
-    [2, 1, 4],
-    [1, 3, 4],
-    [3, 0, 4],
-    [2, 0, 5],
-    [1, 2, 5],
-    [3, 1, 5],
-    [0, 3, 5],
-];
+const TRIANGLES: [[u32; 3]; 8] =
+    [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
 
 /// Octahedron of springs with gas, a particle on each side of the three axes.
 fn octahedron(law: GasLaw) -> Scene {
@@ -31,19 +23,12 @@ fn octahedron(law: GasLaw) -> Scene {
         for j in i + 1..6 {
             if i / 2 != j / 2 {
                 let kind = SpringKind::Structural;
-                let spring = Spring {
-                    kind,
-                    i,
-                    j,
-                    law: law_of_springs,
-                };
+                let spring = Spring { kind, i, j, law: law_of_springs };
                 network.add_spring(spring).unwrap();
             }
         }
     }
-    network
-        .add(Gas::new(law, TRIANGLES.to_vec()).unwrap())
-        .unwrap();
+    network.add(Gas::new(law, TRIANGLES.to_vec()).unwrap()).unwrap();
     network.set_drag(0.2).unwrap();
     let mut y = vec![0.0; 36];
     for i in 0..6 {
@@ -77,19 +62,12 @@ fn a_balloon_rests_where_springs_and_gas_balance() {
     let laws = [
         (GasLaw::Pressure(100.0), rest(|_| 100.0)),
         (GasLaw::Pressure(-100.0), rest(|_| -100.0)),
-        (
-            GasLaw::Amount(amount),
-            rest(|v| ATMOSPHERE * (amount / v - 1.0)),
-        ),
+        (GasLaw::Amount(amount), rest(|v| ATMOSPHERE * (amount / v - 1.0))),
     ];
     for (law, expected) in laws {
-        for (name, value) in [
-            ("verlet", 1e-3),
-            ("rk4", 1e-3),
-            ("dopri5", 1e-7),
-            ("implicit", 0.01),
-            ("bdf", 1e-6),
-        ] {
+        for (name, value) in
+            [("verlet", 1e-3), ("rk4", 1e-3), ("dopri5", 1e-7), ("implicit", 0.01), ("bdf", 1e-6)]
+        {
             let (method, scene) = (method(name), octahedron(law));
             let run = Simulation::new(scene, method, method.control(value));
             if method.is_implicit() && matches!(law, GasLaw::Amount(_)) {
@@ -100,10 +78,7 @@ fn a_balloon_rests_where_springs_and_gas_balance() {
             let mut run = run.unwrap();
             run.advance_to(20.0).unwrap();
             let edge = (run.position(0) - run.position(2)).norm();
-            assert!(
-                (edge - expected).abs() < 1e-6 * expected,
-                "{name} {law:?}: {edge} {expected}"
-            );
+            assert!((edge - expected).abs() < 1e-6 * expected, "{name} {law:?}: {edge} {expected}");
         }
     }
 }
@@ -116,9 +91,7 @@ fn energy_forces_differential_and_couplings_agree() {
         let scene = octahedron(law);
         let whole = scene.model.network().unwrap();
         let mut network = Network::new(vec![0.1; 6]).unwrap();
-        network
-            .add(Gas::new(law, TRIANGLES.to_vec()).unwrap())
-            .unwrap();
+        network.add(Gas::new(law, TRIANGLES.to_vec()).unwrap()).unwrap();
         assert_eq!(whole.particles(), 6);
         let noise = state_random(36, 5);
         let x: Vec<_> = (0..18).map(|k| scene.state[k] + 0.1 * noise[k]).collect();
@@ -139,11 +112,7 @@ fn energy_forces_differential_and_couplings_agree() {
         let size = df.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
         for k in 0..18 {
             let difference = (ahead[k] - behind[k]) / (2.0 * e);
-            assert!(
-                (difference - df[k]).abs() < 1e-6 * size,
-                "{difference} {}",
-                df[k]
-            );
+            assert!((difference - df[k]).abs() < 1e-6 * size, "{difference} {}", df[k]);
         }
         if !network.lists_all_couplings() {
             continue;
@@ -171,9 +140,7 @@ fn energy_forces_differential_and_couplings_agree() {
 fn an_open_surface_holds_no_gas() {
     let mut open = TRIANGLES.to_vec();
     open.pop();
-    let why = Gas::new(GasLaw::Pressure(1.0), open)
-        .unwrap_err()
-        .to_string();
+    let why = Gas::new(GasLaw::Pressure(1.0), open).unwrap_err().to_string();
     assert!(why.contains("must be closed"), "{why}");
     let mut turned = TRIANGLES.to_vec();
     turned[0].swap(0, 1);

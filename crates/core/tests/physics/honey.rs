@@ -12,13 +12,7 @@ use crate::networks::Random;
 #[test]
 fn a_vortex_spreads_as_in_its_closed_form() {
     let (spacing, viscosity, core) = (0.04, 1.2, 0.3);
-    let law = FluidLaw {
-        dimensions: 2,
-        spacing,
-        density: 1000.0,
-        sound: 10.0,
-        viscosity,
-    };
+    let law = FluidLaw { dimensions: 2, spacing, density: 1000.0, sound: 10.0, viscosity };
     let place = |k: i32| (f64::from(k) + 0.5) * spacing;
     let places: Vec<_> = (-25..25)
         .flat_map(|i| (-25..25).map(move |j| (place(i), place(j))))
@@ -79,8 +73,7 @@ fn honey_takes_steps_of_sound() {
         let run = |name: &str, step: f64| {
             let control = Control::Step(step);
             let mut run = Simulation::new(scene.clone(), method(name), control).unwrap();
-            run.advance_to(0.4)
-                .map(|()| (run.state()[..half].to_vec(), run.work().total()))
+            run.advance_to(0.4).map(|()| (run.state()[..half].to_vec(), run.work().total()))
         };
         assert!(run("verlet", sound).is_err());
         let (exact, expensive) = run("verlet", sound / 16.0).unwrap();
@@ -91,10 +84,7 @@ fn honey_takes_steps_of_sound() {
             distance(&own, &exact) / moved
         });
         let order = (errors[0] / errors[1]).log2();
-        assert!(
-            errors[0] < most && order > least_order,
-            "{viscosity}: {errors:?}"
-        );
+        assert!(errors[0] < most && order > least_order, "{viscosity}: {errors:?}");
     }
 }
 
@@ -122,9 +112,7 @@ fn momentum_is_kept_to_rounding() {
                 *y += random.between(-0.01, 0.01);
             }
         }
-        let Model::Network(network) = &scene.model else {
-            unreachable!()
-        };
+        let Model::Network(network) = &scene.model else { unreachable!() };
         let masses = network.masses().to_vec();
         let momenta = |y: &[f64]| {
             let v = &y[3 * n..];
@@ -138,19 +126,12 @@ fn momentum_is_kept_to_rounding() {
             all
         };
         let begun = momenta(&scene.state);
-        let size: f64 = masses
-            .iter()
-            .zip(&scene.state[3 * n..])
-            .map(|(m, v)| m * v.abs())
-            .sum();
+        let size: f64 = masses.iter().zip(&scene.state[3 * n..]).map(|(m, v)| m * v.abs()).sum();
         let mut run =
             Simulation::new(scene, method("implicit-damping"), Control::Step(2e-3)).unwrap();
         run.take_steps(50).unwrap();
         for (now, begun) in momenta(run.state()).into_iter().zip(begun) {
-            assert!(
-                (now - begun).abs() < 1e-13 * size,
-                "{now} instead of {begun}"
-            );
+            assert!((now - begun).abs() < 1e-13 * size, "{now} instead of {begun}");
         }
     }
 }

@@ -28,9 +28,7 @@ fn at_rest(dimensions: u8, [wide, deep]: [u32; 2], spacing: f64, stirred: f64) -
     ));
     if let Model::Network(network) = &mut scene.model {
         // Drag brings the water to rest sooner.
-        network
-            .set_drag(network.masses()[0] * sound / depth)
-            .unwrap();
+        network.set_drag(network.masses()[0] * sound / depth).unwrap();
         let n = network.masses().len();
         let mut random = Random(1);
         for k in 0..usize::from(dimensions) * n {

@@ -60,13 +60,7 @@ pub fn network(seed: u64, kinds: Kinds) -> (Network, Vec<f64>) {
     }
     let n = positions.len();
     let uniform = random.below(2) == 0;
-    let masses = (0..n).map(|_| {
-        if uniform {
-            0.02
-        } else {
-            random.between(0.01, 0.04)
-        }
-    });
+    let masses = (0..n).map(|_| if uniform { 0.02 } else { random.between(0.01, 0.04) });
     let mut network = Network::new(masses.collect()).unwrap();
     // The sheets are added in reverse order, because the order must not matter.
     for sheet in sheets.into_iter().rev() {
@@ -139,11 +133,7 @@ pub fn network(seed: u64, kinds: Kinds) -> (Network, Vec<f64>) {
 /// Networks of all kinds with their names and states.
 pub fn networks() -> impl Iterator<Item = (String, Network, Vec<f64>)> {
     (0..48).map(|seed| {
-        let kinds = Kinds {
-            mixed: seed % 4 < 3,
-            torn: seed % 8 < 4,
-            damped: seed % 3 > 0,
-        };
+        let kinds = Kinds { mixed: seed % 4 < 3, torn: seed % 8 < 4, damped: seed % 3 > 0 };
         let (network, y) = network(seed, kinds);
         (format!("seed {seed}"), network, y)
     })
@@ -156,8 +146,7 @@ pub fn listed(network: &Network) -> Network {
     for strip in network.buckling() {
         list.add_buckling(strip).unwrap();
     }
-    list.set_triangles(network.triangles().iter().map(|t| t.map(|i| i as usize)))
-        .unwrap();
+    list.set_triangles(network.triangles().iter().map(|t| t.map(|i| i as usize))).unwrap();
     list.set_wind(network.wind().copied());
     list.set_gravity(network.gravity().unwrap());
     list.set_drag(network.drag().unwrap()).unwrap();

@@ -39,10 +39,7 @@ fn as_much_flows_out_as_in() {
             let layers = (t / 0.05).round() as usize;
             let left = ((t - 0.5).max(0.0) / 0.05).round() as usize;
             assert_eq!(out + flowing, layers * each, "{dimensions}: {t}");
-            assert!(
-                out.abs_diff(left * each) <= each,
-                "{dimensions}: {t}, {out}"
-            );
+            assert!(out.abs_diff(left * each) <= each, "{dimensions}: {t}, {out}");
         }
     }
 }

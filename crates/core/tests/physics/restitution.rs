@@ -134,10 +134,7 @@ fn order_two_is_kept_over_bounces() {
             // step.
             let errors = (0..8).map(|k| {
                 let y = end(name, step / (1.0 + 0.05 * f64::from(k)));
-                y.iter()
-                    .zip(&best)
-                    .map(|(a, b)| (a - b).powi(2))
-                    .sum::<f64>()
+                y.iter().zip(&best).map(|(a, b)| (a - b).powi(2)).sum::<f64>()
             });
             errors.sum::<f64>().sqrt()
         };

@@ -31,10 +31,7 @@ fn body(inertia: Vector3<f64>, spin: Vector3<f64>, velocity: Vector3<f64>) -> Sc
 fn own_spin(run: &Simulation) -> Vector3<f64> {
     let network = run.model().network().unwrap();
     let rotation = network.rotation(0, run.state());
-    rotation
-        .matrix()
-        .tr_mul(&rotation.momentum)
-        .component_div(&INERTIA)
+    rotation.matrix().tr_mul(&rotation.momentum).component_div(&INERTIA)
 }
 
 /// Jacobi's elliptic functions sn, cn and dn of u with modulus k, and the quarter period K, by the
@@ -51,10 +48,7 @@ fn jacobi(u: f64, k: f64) -> ([f64; 3], f64) {
         phase = 0.5 * (phase + (ratio * phase.sin()).asin());
     }
     let (sn, cn) = phase.sin_cos();
-    (
-        [sn, cn, (1.0 - k * k * sn * sn).sqrt()],
-        std::f64::consts::FRAC_PI_2 / a,
-    )
+    ([sn, cn, (1.0 - k * k * sn * sn).sqrt()], std::f64::consts::FRAC_PI_2 / a)
 }
 
 /// Exact angular velocity of a free body along its axes at time t, which is (small, 0, large) at
@@ -91,10 +85,7 @@ fn a_handle_flips_as_elliptic_functions_say() {
     let end = 10.0 * flip;
     let found = own_spin(&run("dop853", Control::Tolerance(2e-14), START, end));
     let (spin, _) = exact(START, end);
-    assert!(
-        (found - spin).norm() < 1e-9 * spin.norm(),
-        "{found} {spin} {flip}"
-    );
+    assert!((found - spin).norm() < 1e-9 * spin.norm(), "{found} {spin} {flip}");
     // It did flip: the spin about the middle axis is reversed half a period after its largest.
     let [a, b] = [0.5, 1.5].map(|at| exact(START, at * flip).0.y);
     assert!(a > 4.0 && (a + b).abs() < 1e-9, "{a} {b}");
@@ -133,9 +124,8 @@ fn orders_hold_for_rotations() {
 
 #[test]
 fn angular_momentum_keeps_its_bits() {
-    for method in METHODS
-        .iter()
-        .filter(|m| !m.positions_only() && !m.needs_springs() && !m.plain_only())
+    for method in
+        METHODS.iter().filter(|m| !m.positions_only() && !m.needs_springs() && !m.plain_only())
     {
         let scene = body(INERTIA, START, Vector3::new(1.0, 2.0, 3.0));
         let rotation = |run: &Simulation| {
@@ -209,10 +199,7 @@ fn masses_are_exact() {
 
 #[test]
 fn bodies_that_cannot_be_are_refused() {
-    let part = Part {
-        shape: Shape::Sphere { radius: 0.1 },
-        at: Vector3::zeros(),
-    };
+    let part = Part { shape: Shape::Sphere { radius: 0.1 }, at: Vector3::zeros() };
     let refused = |inertia| Body::new(0, 1, inertia, vec![part.clone()]).unwrap_err();
     let error = format!("{}", refused(Vector3::new(1.0, 1.0, 2.1)));
     assert!(error.contains("sum of the other two"), "{error}");

@@ -9,12 +9,8 @@ const RADIUS: f64 = 0.1;
 const ROLLING: f64 = 0.005;
 const MASS: f64 = 2.0;
 
-const METHODS: [(&str, f64); 4] = [
-    ("verlet", 1e-3),
-    ("rk4", 2e-3),
-    ("symplectic-euler", 1e-3),
-    ("dopri5", 1e-6),
-];
+const METHODS: [(&str, f64); 4] =
+    [("verlet", 1e-3), ("rk4", 2e-3), ("symplectic-euler", 1e-3), ("dopri5", 1e-6)];
 
 /// A ball that rolls along x at a speed (m/s) on what the text describes, with gravity that is
 /// inclined by an angle (rad).
@@ -71,11 +67,7 @@ fn the_tangent_of_the_slope_decides_whether_a_ball_rolls() {
     // It rests up to the tangent 0.05.
     for pair in METHODS {
         let rests = run(&ball(0.0, 0.045, "floor = 0"), pair, 4.0);
-        assert!(
-            rests.position(0).x < 1e-4,
-            "{pair:?}: {}",
-            rests.position(0)
-        );
+        assert!(rests.position(0).x < 1e-4, "{pair:?}: {}", rests.position(0));
         let slope = 0.15_f64;
         let rolls = run(&ball(0.0, slope, "floor = 0"), pair, 2.0);
         let along = 5.0 / 7.0 * G * (slope.sin() - slope.cos() * ROLLING / RADIUS);

@@ -47,11 +47,7 @@ fn what_is_inside_is_put_on_the_nearest_point_of_the_surface() {
             let step = |k: i32| f64::from(k % 30) * 0.083 - 0.2;
             let p = Vector3::new(step(k), step(k / 30), 0.6 * step(k / 900));
             let mut y = [p.x, p.y, p.z, 0.0, 0.0, 0.0];
-            let step = Step {
-                t: 0.0,
-                h: 0.1,
-                y0: &[],
-            };
+            let step = Step { t: 0.0, h: 0.1, y0: &[] };
             let met = resolve(std::slice::from_ref(&solid), &[1.0], &step, &mut y).contacts > 0;
             let within = p.iter().all(|x| *x > 0.0)
                 && p.x < 2.0
@@ -81,10 +77,7 @@ fn an_open_mesh_is_refused_with_the_edge_that_is_open() {
     let ends = "from point 0 at (0, 0, 0) to point 1 at (2, 0, 0)";
     assert!(open.contains(ends) && open.ends_with("not 1"), "{open}");
     let turned = said(&|triangles| triangles[0].swap(0, 1));
-    assert!(
-        turned.contains(ends) && turned.ends_with("sides"),
-        "{turned}"
-    );
+    assert!(turned.contains(ends) && turned.ends_with("sides"), "{turned}");
     assert!(said(&|triangles| triangles.push(triangles[0])).ends_with("not 3"));
     assert!(said(&|triangles| triangles[3][1] = 12).contains("no corner 12"));
     assert!(said(&Vec::clear).contains("1 to 200000 triangles, not 0"));

@@ -38,11 +38,7 @@ impl Mechanics for WholeArrays<'_> {
 #[test]
 fn sheets_step_in_sweeps_to_the_bits_of_whole_arrays() {
     for seed in 0..24 {
-        let kinds = Kinds {
-            mixed: false,
-            torn: seed % 2 == 0,
-            damped: seed % 3 > 0,
-        };
+        let kinds = Kinds { mixed: false, torn: seed % 2 == 0, damped: seed % 3 > 0 };
         let (network, y) = network(seed, kinds);
         assert!(Mechanics::rows(&network).is_some());
         for name in ["euler", "rk4", "symplectic-euler", "verlet", "pefrl"] {
@@ -70,25 +66,17 @@ fn threads_change_no_bit() {
     let mut first = 0;
     for (rows, cols) in grids {
         let network = network.get_or_insert_with(|| Network::new(masses.clone()).unwrap());
-        let sheet = Sheet::new(
-            Grid::new(rows, cols).unwrap(),
-            SPACING,
-            [50.0, 20.0, 9.0],
-            0.003,
-        );
+        let sheet = Sheet::new(Grid::new(rows, cols).unwrap(), SPACING, [50.0, 20.0, 9.0], 0.003);
         network.add(sheet.unwrap().starting_at(first)).unwrap();
         let [i, j] = [first, first + 1];
-        network
-            .break_springs(&[[i, j], [j + 2 * cols, i + 2 * cols]])
-            .unwrap();
+        network.break_springs(&[[i, j], [j + 2 * cols, i + 2 * cols]]).unwrap();
         first += rows * cols;
     }
     let mut network = network.unwrap();
     network.set_wind(Some(Wind::new(5, Vector3::new(0.0, 0.01, 0.05))));
     network.set_gravity(Vector3::new(0.0, -9.81, 0.0));
-    let y: Vec<f64> = (0..6 * n)
-        .map(|k| positions[k % n].get(k / n).copied().unwrap_or(0.0))
-        .collect();
+    let y: Vec<f64> =
+        (0..6 * n).map(|k| positions[k % n].get(k / n).copied().unwrap_or(0.0)).collect();
     let mixed = {
         let mut mixed = network.clone();
         let law = SpringLaw::new(10.0, 0.1, 0.1).unwrap();
@@ -108,11 +96,7 @@ fn threads_change_no_bit() {
                 let whole = WholeArrays(network);
                 assert!(integrate(&whole, method(name), &y, 1e-3, 3) == expected);
             }
-            assert!(
-                [2, 3, 5]
-                    .into_iter()
-                    .all(|threads| run(threads) == expected)
-            );
+            assert!([2, 3, 5].into_iter().all(|threads| run(threads) == expected));
         }
     }
 }
@@ -121,11 +105,7 @@ fn threads_change_no_bit() {
 /// is supported.
 #[test]
 fn rows_are_offered_where_nothing_joins_them() {
-    let kinds = Kinds {
-        mixed: false,
-        torn: true,
-        damped: true,
-    };
+    let kinds = Kinds { mixed: false, torn: true, damped: true };
     let (network, _) = network(2, kinds);
     let has_rows = |change: &dyn Fn(&mut Network)| {
         let mut changed = network.clone();
@@ -163,11 +143,7 @@ fn rows_are_offered_where_nothing_joins_them() {
 /// springs.
 #[test]
 fn torn_cloth_goes_on_in_sweeps() {
-    let kinds = Kinds {
-        mixed: false,
-        torn: false,
-        damped: true,
-    };
+    let kinds = Kinds { mixed: false, torn: false, damped: true };
     let (mut network, y) = network(5, kinds);
     network.set_tear(Some(1.45)).unwrap();
     let mut list = listed(&network);

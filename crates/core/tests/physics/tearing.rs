@@ -48,18 +48,11 @@ fn stretch(run: &Simulation) -> f64 {
 #[test]
 fn the_weak_link_breaks_as_it_passes_the_limit_and_the_rest_falls_freely() {
     let mut times = vec![];
-    for (name, value) in [
-        ("rk4", 0.001),
-        ("verlet", 0.001),
-        ("implicit-midpoint", 0.001),
-        ("dopri5", 1e-8),
-    ] {
-        let mut run = Simulation::new(
-            chain(Some(LIMIT)),
-            method(name),
-            method(name).control(value),
-        )
-        .unwrap();
+    for (name, value) in
+        [("rk4", 0.001), ("verlet", 0.001), ("implicit-midpoint", 0.001), ("dopri5", 1e-8)]
+    {
+        let mut run =
+            Simulation::new(chain(Some(LIMIT)), method(name), method(name).control(value)).unwrap();
         let mut before = 1.0;
         let weak = |run: &Simulation| (run.position(1) - run.position(2)).norm() / 0.5;
         while run.tears() == 0 {
@@ -123,9 +116,7 @@ fn a_limit_that_makes_no_sense_is_refused() {
 /// Cloth with triangles that tears at 1.6 rest lengths.
 fn weak_cloth() -> Scene {
     let mut scene = scene("cloth");
-    let Model::Network(network) = &mut scene.model else {
-        panic!("masses and springs")
-    };
+    let Model::Network(network) = &mut scene.model else { panic!("masses and springs") };
     let grid = network.sheets().next().unwrap().grid();
     network.set_triangles(grid.triangles()).unwrap();
     network.set_tear(Some(1.6)).unwrap();
@@ -154,12 +145,9 @@ fn pull_about(run: &mut Simulation) {
 
 #[test]
 fn cloth_pulled_by_a_hand_tears_stays_finite_and_is_mended_by_a_reset() {
-    for (name, value) in [
-        ("trapezoid", 0.005),
-        ("verlet", 0.005),
-        ("implicit", 0.01),
-        ("dopri5", 1e-4),
-    ] {
+    for (name, value) in
+        [("trapezoid", 0.005), ("verlet", 0.005), ("implicit", 0.01), ("dopri5", 1e-4)]
+    {
         let mut run =
             Simulation::new(weak_cloth(), method(name), method(name).control(value)).unwrap();
         let all = network_of(&run).springs().count();
@@ -203,22 +191,13 @@ fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
         x[i] = spacing * (i % 6) as f64;
         x[30 + i] = -spacing * (i / 6) as f64;
     }
-    assert_eq!(
-        network.tear(&x, 0.0),
-        0,
-        "it never tears unless it is asked"
-    );
+    assert_eq!(network.tear(&x, 0.0), 0, "it never tears unless it is asked");
     network.set_tear(Some(1.9)).unwrap();
     assert_eq!(network.tear(&x, 0.0), 0);
     assert!(network.sheets().next().is_some());
     // All particles right of the third column move to the right by one spacing. Then 5 structural
     // springs are 2 rest lengths long, shear springs sqrt 5 / sqrt 2 = 1.58, and bend springs 1.5.
-    for (_, x) in x
-        .iter_mut()
-        .enumerate()
-        .take(30)
-        .filter(|(i, _)| i % 6 >= 3)
-    {
+    for (_, x) in x.iter_mut().enumerate().take(30).filter(|(i, _)| i % 6 >= 3) {
         *x += spacing;
     }
     let all = network.springs().count();
@@ -239,8 +218,7 @@ fn a_bend_spring_goes_with_the_structural_ones_that_it_runs_along() {
     network.spring_forces(&x, &v, &mut f);
     let mut list = Network::new(vec![1.0; 30]).unwrap();
     let left = scene.model.network().unwrap().springs();
-    list.add_springs(left.filter(|s| !network.is_torn(s.i, s.j)))
-        .unwrap();
+    list.add_springs(left.filter(|s| !network.is_torn(s.i, s.j))).unwrap();
     let mut expected = vec![0.0; 90];
     list.spring_forces(&x, &v, &mut expected);
     assert!(distance(&f, &expected) < 1e-13 * size(&expected));
@@ -288,10 +266,7 @@ fn bend_springs_with_nothing_along_them_or_another_way_round_hold() {
             assert_eq!(network.tear(&line(0.49), 0.0), 0);
             assert_eq!(network.tear(&line(0.51), 0.0), torn, "{links:?}");
             assert_eq!(network.is_torn(2, 0), torn == 2);
-            assert_eq!(
-                network.buckling().count(),
-                usize::from(buckles && torn != 2)
-            );
+            assert_eq!(network.buckling().count(), usize::from(buckles && torn != 2));
             // With the particles far apart, all springs tear.
             let far: Vec<f64> = line(0.0).iter().map(|x| x * 4.0).collect();
             assert_eq!(network.tear(&far, 0.0), links.len() + 1 - torn);
@@ -374,10 +349,7 @@ fn what_tore_after_a_moment_is_mended_there() {
         run.advance_to(f64::from(k) / 16.0).unwrap();
         moments.push((run.moment(), network_of(&run).clone()));
     }
-    let tears: Vec<_> = moments
-        .iter()
-        .map(|(moment, _)| moment.torn.len())
-        .collect();
+    let tears: Vec<_> = moments.iter().map(|(moment, _)| moment.torn.len()).collect();
     assert!(
         tears[0] == 1 && tears[20] > 10 && tears.windows(2).filter(|t| t[0] < t[1]).count() > 2
     );
@@ -388,10 +360,7 @@ fn what_tore_after_a_moment_is_mended_there() {
         run.rewind(moment).unwrap();
         assert_eq!((run.time(), run.steps()), (moment.time(), moment.run.steps));
         assert_eq!(run.moment().obstacles, moment.obstacles);
-        assert_eq!(
-            (run.state(), network_of(&run).torn()),
-            (&moment.run.y[..], &moment.torn[..])
-        );
+        assert_eq!((run.state(), network_of(&run).torn()), (&moment.run.y[..], &moment.torn[..]));
         assert!(network_of(&run).springs().eq(network.springs()));
         run.advance_to(1.25).unwrap();
         assert_eq!(run.state(), moments[20].0.run.y, "{k}");

@@ -18,10 +18,7 @@ fn after(scene: &Scene, (method, control): (&str, Control), threads: usize) -> V
 
 fn built_in(name: &str) -> Scene {
     let entry = a3_scenes::find(name).unwrap();
-    let mut scene = entry
-        .build(Some(Grid::new(97, 101).unwrap()))
-        .unwrap()
-        .scene;
+    let mut scene = entry.build(Some(Grid::new(97, 101).unwrap())).unwrap().scene;
     // No two particles move alike.
     for (k, y) in scene.state.iter_mut().enumerate() {
         *y += 1e-4 * (k as f64).sin();
@@ -40,11 +37,7 @@ fn chain() -> Scene {
         let angle = (0.1 * i as f64).sin();
         state[i] = state[i - 1] + 0.1 * angle.sin();
         state[n + i] = state[n + i - 1] - 0.1 * angle.cos();
-        let rod = Constraint::Rod {
-            i: i - 1,
-            j: i,
-            length: 0.1,
-        };
+        let rod = Constraint::Rod { i: i - 1, j: i, length: 0.1 };
         network.add_constraint(rod).unwrap();
     }
     Scene::new("chain", Model::Network(Box::new(network)), state)

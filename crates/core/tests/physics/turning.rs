@@ -9,12 +9,7 @@ const G: f64 = 9.81;
 
 /// Turn about y from the beginning.
 fn about_y(rate: f64) -> Turn {
-    Turn {
-        axis: Vector3::y(),
-        rate,
-        start: 0.0,
-        end: None,
-    }
+    Turn { axis: Vector3::y(), rate, start: 0.0, end: None }
 }
 
 /// A pin on a helix about x: 270 degrees between 0.5 s and 2 s, while the axis moves along itself.
@@ -23,12 +18,7 @@ fn a_turning_pin_has_the_velocity_and_acceleration_of_its_position() {
     let quarter = std::f64::consts::FRAC_PI_2;
     let arm = Vector3::new(0.3, 0.5, 0.0);
     let path = Path::Turn {
-        turn: Turn {
-            axis: Vector3::x(),
-            rate: 2.0 * quarter,
-            start: 0.5,
-            end: Some(2.0),
-        },
+        turn: Turn { axis: Vector3::x(), rate: 2.0 * quarter, start: 0.5, end: Some(2.0) },
         arm,
         from: Vector3::new(1.0, 2.0, 3.0),
         to: Vector3::new(2.0, 2.0, 3.0),
@@ -40,11 +30,7 @@ fn a_turning_pin_has_the_velocity_and_acceleration_of_its_position() {
     // y turns to z, to -y, and to -z.
     let turned = Vector3::new(2.3, 2.0, 2.5);
     for t in [2.0, 7.0] {
-        assert!(
-            (at(t).position - turned).norm() < 1e-15,
-            "{}",
-            at(t).position
-        );
+        assert!((at(t).position - turned).norm() < 1e-15, "{}", at(t).position);
         assert_eq!(at(t).velocity, Vector3::zeros());
     }
     let h = 1e-5;
@@ -100,15 +86,9 @@ fn a_turntable_carries_a_particle_round() {
 #[test]
 fn a_turning_ball_drags_a_particle() {
     let ball = Obstacle {
-        turn: Some(Turn {
-            axis: Vector3::z(),
-            ..about_y(3.0)
-        }),
+        turn: Some(Turn { axis: Vector3::z(), ..about_y(3.0) }),
         friction: 0.3,
-        ..Obstacle::smooth(
-            Shape::Sphere { radius: 1.0 },
-            Path::Still(Vector3::new(0.0, -1.0, 0.0)),
-        )
+        ..Obstacle::smooth(Shape::Sphere { radius: 1.0 }, Path::Still(Vector3::new(0.0, -1.0, 0.0)))
     };
     let mut run = run(ball, Vector3::zeros(), Vector3::zeros());
     run.take_steps(10).unwrap();

@@ -89,10 +89,7 @@ fn slabs_of_all_kinds_stop_a_blob_and_take_its_momentum() {
         for i in &drops {
             let x = run.position(*i);
             let beside = x.y.abs() > 0.6 || x.z.abs() > 0.6;
-            assert!(
-                x.x < deepest || beside,
-                "drop {i} is at {x}, the slab ends at {deepest}"
-            );
+            assert!(x.x < deepest || beside, "drop {i} is at {x}, the slab ends at {deepest}");
         }
     }
 }
@@ -129,10 +126,7 @@ fn a_pond_of_cloth_carries_its_water() {
     let carried: f64 = drops.iter().map(|i| forces[n + i]).sum();
     let network = run.model().network().unwrap();
     let weight = 9.81 * drops.len() as f64 * network.masses()[drops[0]];
-    assert!(
-        (carried / weight - 1.0).abs() < 0.02,
-        "{carried} N of {weight} N"
-    );
+    assert!((carried / weight - 1.0).abs() < 0.02, "{carried} N of {weight} N");
     let lowest = (0..drops[0]).map(|i| run.position(i).y).fold(1.0, f64::min);
     for i in drops {
         let x = run.position(i);

@@ -37,11 +37,8 @@ fn forces(
 }
 
 /// Corners (m) of a triangle of 3 m2 in the plane z = 0.
-const CORNERS: [Vector3<f64>; 3] = [
-    Vector3::new(-1.0, -0.5, 0.0),
-    Vector3::new(2.0, -0.5, 0.0),
-    Vector3::new(0.0, 1.5, 0.0),
-];
+const CORNERS: [Vector3<f64>; 3] =
+    [Vector3::new(-1.0, -0.5, 0.0), Vector3::new(2.0, -0.5, 0.0), Vector3::new(0.0, 1.5, 0.0)];
 const AREA: f64 = 3.0;
 
 /// Total force (N) on the triangle of air that streams at u (m/s).
@@ -51,12 +48,7 @@ fn total(wind: &Wind, u: Vector3<f64>) -> Vector3<f64> {
 
 #[test]
 fn a_plate_face_on_has_the_drag_of_its_area_and_no_lift() {
-    let each = forces(
-        &calm(DRAG, LIFT),
-        CORNERS,
-        [Vector3::z() * 5.0; 3],
-        [0, 1, 2],
-    );
+    let each = forces(&calm(DRAG, LIFT), CORNERS, [Vector3::z() * 5.0; 3], [0, 1, 2]);
     let expected = -Vector3::z() * (0.5 * DENSITY * DRAG * AREA * 25.0);
     for force in each {
         assert_relative_eq!(force, expected / 3.0, max_relative = 1e-15);
@@ -65,20 +57,14 @@ fn a_plate_face_on_has_the_drag_of_its_area_and_no_lift() {
 
 #[test]
 fn a_plate_edge_on_and_one_that_drifts_along_feel_nothing() {
-    assert_eq!(
-        total(&calm(DRAG, LIFT), Vector3::new(3.0, -4.0, 0.0)),
-        Vector3::zeros()
-    );
+    assert_eq!(total(&calm(DRAG, LIFT), Vector3::new(3.0, -4.0, 0.0)), Vector3::zeros());
     assert_eq!(total(&calm(DRAG, LIFT), Vector3::zeros()), Vector3::zeros());
     // A triangle without area feels no force either.
     let line = [0.0, 1.0, 3.0].map(|s| Vector3::new(s, 2.0 * s, -s));
     let moving = [Vector3::new(1.0, 2.0, 3.0); 3];
     let none = [Vector3::zeros(); 3];
     assert_eq!(forces(&calm(DRAG, LIFT), line, moving, [0, 1, 2]), none);
-    assert_eq!(
-        forces(&calm(DRAG, LIFT), [line[1]; 3], moving, [0, 1, 2]),
-        none
-    );
+    assert_eq!(forces(&calm(DRAG, LIFT), [line[1]; 3], moving, [0, 1, 2]), none);
     assert_eq!(forces(&calm(DRAG, LIFT), CORNERS, moving, [0, 1, 1]), none);
 }
 
@@ -91,39 +77,20 @@ fn at_45_degrees_drag_and_lift_are_those_of_the_formula() {
     let pressure = 0.5 * DENSITY * 16.0 * AREA;
     let cos = 0.5f64.sqrt();
     let force = total(&calm(DRAG, LIFT), 4.0 * along);
-    assert_relative_eq!(
-        force.dot(&along),
-        pressure * DRAG * cos,
-        max_relative = 1e-14
-    );
-    assert_relative_eq!(
-        force.dot(&across),
-        pressure * LIFT * 0.5,
-        max_relative = 1e-14
-    );
+    assert_relative_eq!(force.dot(&along), pressure * DRAG * cos, max_relative = 1e-14);
+    assert_relative_eq!(force.dot(&across), pressure * LIFT * 0.5, max_relative = 1e-14);
     // The same holds for air from the other side.
     let force = total(&calm(DRAG, LIFT), 4.0 * across);
-    assert_relative_eq!(
-        force.dot(&across),
-        pressure * DRAG * cos,
-        max_relative = 1e-14
-    );
-    assert_relative_eq!(
-        force.dot(&along),
-        pressure * LIFT * 0.5,
-        max_relative = 1e-14
-    );
+    assert_relative_eq!(force.dot(&across), pressure * DRAG * cos, max_relative = 1e-14);
+    assert_relative_eq!(force.dot(&along), pressure * LIFT * 0.5, max_relative = 1e-14);
 }
 
 #[test]
 fn which_side_is_the_front_does_not_matter() {
     let air = Air::new(DENSITY, DRAG, LIFT).unwrap();
     let wind = Wind::on_triangles(5, Vector3::new(2.0, -1.0, 3.0), air);
-    let corners = [
-        Vector3::new(0.1, 0.2, 0.9),
-        Vector3::new(1.3, -0.4, 0.2),
-        Vector3::new(-0.6, 0.8, -0.3),
-    ];
+    let corners =
+        [Vector3::new(0.1, 0.2, 0.9), Vector3::new(1.3, -0.4, 0.2), Vector3::new(-0.6, 0.8, -0.3)];
     let velocities = [Vector3::x(), Vector3::y() * 2.0, Vector3::z() * -1.5];
     let front = forces(&wind, corners, velocities, [0, 1, 2]);
     assert!(front[0].norm() > 0.1);
@@ -144,9 +111,8 @@ fn gusts_are_felt_where_the_triangle_is() {
     let middle = CORNERS.iter().sum::<Vector3<f64>>() / 3.0;
     let u = Wind::new(5, mean).at(0.3, middle.into());
     assert!((u - mean).norm() > 0.1);
-    let found: Vector3<f64> = forces(&gusty, CORNERS, [Vector3::zeros(); 3], [0, 1, 2])
-        .iter()
-        .sum();
+    let found: Vector3<f64> =
+        forces(&gusty, CORNERS, [Vector3::zeros(); 3], [0, 1, 2]).iter().sum();
     assert_relative_eq!(found, total(&calm(DRAG, LIFT), u), max_relative = 1e-14);
 }
 
@@ -154,9 +120,7 @@ fn gusts_are_felt_where_the_triangle_is() {
 fn flying(wind: &Wind) -> Scene {
     let mut scene = scene_with_grid("cloth", 9, 11);
     let grid = scene.grid().unwrap();
-    let Model::Network(network) = &mut scene.model else {
-        panic!("masses and springs")
-    };
+    let Model::Network(network) = &mut scene.model else { panic!("masses and springs") };
     network.set_triangles(grid.triangles()).unwrap();
     scene.wind = Some(*wind);
     scene
@@ -166,9 +130,7 @@ fn flying(wind: &Wind) -> Scene {
 fn still_air_slows_what_moves_and_never_drives_it() {
     let mut scene = flying(&calm(DRAG, 0.0));
     let grid = scene.grid().unwrap();
-    let Model::Network(network) = &mut scene.model else {
-        panic!("masses and springs")
-    };
+    let Model::Network(network) = &mut scene.model else { panic!("masses and springs") };
     let n = grid.particles();
     let mut free = Network::new(network.masses().to_vec()).unwrap();
     free.add(network.sheets().next().unwrap().clone()).unwrap();
@@ -225,28 +187,15 @@ fn methods_keep_their_order_in_the_air() {
     let mut network = Network::new(vec![1.0; 3]).unwrap();
     for (i, j) in [(0, 1), (1, 2), (2, 0)] {
         let law = SpringLaw::new(20.0, 2.5, 0.0).unwrap();
-        network
-            .add_spring(Spring {
-                kind: SpringKind::Structural,
-                i,
-                j,
-                law,
-            })
-            .unwrap();
+        network.add_spring(Spring { kind: SpringKind::Structural, i, j, law }).unwrap();
     }
     network.set_triangles([[0, 1, 2]]).unwrap();
     let air = Air::new(DENSITY, DRAG, LIFT).unwrap();
     let wind = Wind::on_triangles(2, Vector3::new(0.3, 0.2, 3.0), air);
     network.set_wind(Some(wind));
     assert_eq!(network.forces_in_use(), ["springs", "wind"]);
-    let state: Vec<f64> = (0..18)
-        .map(|k| {
-            CORNERS
-                .get(k % 3)
-                .filter(|_| k < 9)
-                .map_or(0.1, |c| c[k / 3])
-        })
-        .collect();
+    let state: Vec<f64> =
+        (0..18).map(|k| CORNERS.get(k % 3).filter(|_| k < 9).map_or(0.1, |c| c[k / 3])).collect();
     let exact = integrate(&network, method("dop853"), &state, 1.0 / 512.0, 512);
     for m in integrators::METHODS.iter().filter(|m| m.order <= 4) {
         let error = |steps: u64| {
@@ -309,11 +258,7 @@ fn without_triangles_there_is_nothing_to_blow_on() {
 /// A wind that pushes particles pushes a rigid body once, whatever its shape, and without a torque.
 #[test]
 fn a_rigid_body_is_pushed_once() {
-    for shape in [
-        "ball = 0.2",
-        "box = [0.4, 0.2, 0.2]",
-        "capsule = [0.4, 0.1]",
-    ] {
+    for shape in ["ball = 0.2", "box = [0.4, 0.2, 0.2]", "capsule = [0.4, 0.1]"] {
         for (key, x) in [("force", 0.5), ("force_per_mass", 1.0)] {
             let scene = described(&format!(
                 "[wind]\non = true\nsteady = true\n{key} = [1, 0, 0]\n[[body]]\nparts = [{{ {shape} }}]\nmass = 2\n\
@@ -327,10 +272,7 @@ fn a_rigid_body_is_pushed_once() {
             for (i, before) in before.iter().enumerate() {
                 let moved = run.position(i) - before;
                 let exact = Vector3::new(0.5 * x, 0.0, 0.0);
-                assert!(
-                    (moved - exact).norm() < 1e-9,
-                    "{shape}, {key}: {i} by {moved}"
-                );
+                assert!((moved - exact).norm() < 1e-9, "{shape}, {key}: {i} by {moved}");
             }
             assert!(run.gained().is_none());
         }

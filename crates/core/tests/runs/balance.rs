@@ -15,19 +15,13 @@ fn run(name: &str, solver: &str, h: f64, until: f64) -> (Simulation, Result<(), 
 #[test]
 fn energy_from_nowhere_is_noticed() {
     // Their states are absurd, although no particle is far away.
-    for (name, solver, h) in [
-        ("chain", "v", 0.231),
-        ("mit", "p", 0.0516),
-        ("jelly", "i", 0.04),
-        ("jelly", "i", 0.24),
-    ] {
+    for (name, solver, h) in
+        [("chain", "v", 0.231), ("mit", "p", 0.0516), ("jelly", "i", 0.04), ("jelly", "i", 0.24)]
+    {
         let (run, end) = run(name, solver, h, 4.5);
         let gained = match end {
             Ok(()) => run.gained().map(|gain| gain.energy),
-            Err(Error::BlowUp(BlowUp {
-                cause: Cause::Gained { energy, .. },
-                ..
-            })) => Some(energy),
+            Err(Error::BlowUp(BlowUp { cause: Cause::Gained { energy, .. }, .. })) => Some(energy),
             Err(why) => panic!("{name} by {solver}: {why}"),
         };
         assert!(gained > Some(50.0), "{name} by {solver}: {gained:?}");
@@ -36,10 +30,7 @@ fn energy_from_nowhere_is_noticed() {
     let Err(Error::BlowUp(lost)) = end else {
         panic!("it went on");
     };
-    assert!(
-        matches!(lost.cause, Cause::Gained { particle: 1, .. }),
-        "{lost}"
-    );
+    assert!(matches!(lost.cause, Cause::Gained { particle: 1, .. }), "{lost}");
     assert!(lost.to_string().contains("J that nothing put in"), "{lost}");
 }
 
@@ -167,13 +158,9 @@ fn errors_within_a_tolerance_are_no_gain() {
         mass = 0.489
         rigid = true
     ";
-    for (toml, name) in [
-        (chain, "dopri5"),
-        (chain, "rkf45"),
-        (chain, "dop853"),
-        (rods, "rkf45"),
-        (rods, "dopri5"),
-    ] {
+    for (toml, name) in
+        [(chain, "dopri5"), (chain, "rkf45"), (chain, "dop853"), (rods, "rkf45"), (rods, "dopri5")]
+    {
         for tolerance in [5e-3, 1e-6] {
             let control = Control::Tolerance(tolerance);
             let mut run = Simulation::new(described(toml), method(name), control).unwrap();
@@ -257,10 +244,7 @@ fn gains_are_compared_with_what_moves() {
     let gain = gained(1e-3).unwrap();
     assert!((0.1..0.3).contains(&gain.share), "{gain:?}");
     // The pendulum falls by 490.5 J.
-    assert!(
-        (gain.energy / gain.share - 490.5).abs() < 0.2 * 490.5,
-        "{gain:?}"
-    );
+    assert!((gain.energy / gain.share - 490.5).abs() < 0.2 * 490.5, "{gain:?}");
     assert_eq!(gained(1e-8), None);
 }
 
@@ -350,12 +334,9 @@ fn a_ball_on_a_box_that_jumps_gains_nothing() {
 /// What a method adds to rods that it stretches is told, and nothing else is.
 #[test]
 fn rods_put_in_no_work() {
-    for (solver, h, until) in [
-        ("s", 0.002, 3.0),
-        ("s", 0.002, 10.0),
-        ("m", 0.02, 10.0),
-        ("t", 0.02, 10.0),
-    ] {
+    for (solver, h, until) in
+        [("s", 0.002, 3.0), ("s", 0.002, 10.0), ("m", 0.02, 10.0), ("t", 0.02, 10.0)]
+    {
         let (run, end) = run("double-pendulum", solver, h, until);
         end.unwrap();
         let begun = Simulation::new(scene("double-pendulum"), run.method(), run.control()).unwrap();

@@ -68,10 +68,7 @@ fn contradictions_are_named() {
             let Err(Error::BlowUp(lost)) = run.advance_to(3.0) else {
                 panic!("{name} went on");
             };
-            assert!(
-                matches!(lost.cause, Cause::Contradiction(_)),
-                "{name}: {lost}"
-            );
+            assert!(matches!(lost.cause, Cause::Contradiction(_)), "{name}: {lost}");
             assert!(lost.time > from && lost.time < until, "{name}: {lost}");
             let words = lost.to_string();
             assert!(words.contains("the rod between particles"), "{words}");
@@ -97,9 +94,7 @@ fn rods_that_lose_their_length_are_told_with_the_energy() {
     let Err(Error::BlowUp(lost)) = lost.advance_to(5.0) else {
         panic!("it went on");
     };
-    let Cause::Unmet(unmet) = lost.cause else {
-        panic!("{lost}")
-    };
+    let Cause::Unmet(unmet) = lost.cause else { panic!("{lost}") };
     assert!(unmet.share > 0.1);
     assert!(lost.to_string().contains("is off by"), "{lost}");
 }

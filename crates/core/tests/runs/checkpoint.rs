@@ -51,12 +51,7 @@ fn check(scene: &Scene, method: &'static Method, control: Control, acts: &[Act])
     let mut others: Vec<Simulation> = vec![];
     let alike = |run: &Simulation, others: &[Simulation], k: usize| {
         for other in others {
-            assert!(
-                seen(run) == seen(other),
-                "{} by {} after {k}",
-                scene.name,
-                method.name
-            );
+            assert!(seen(run) == seen(other), "{} by {} after {k}", scene.name, method.name);
         }
     };
     for (k, act) in acts.iter().enumerate() {
@@ -75,11 +70,7 @@ fn check(scene: &Scene, method: &'static Method, control: Control, acts: &[Act])
         }
         alike(&run, &others, k);
         let kept = run.checkpoint();
-        let kept = if k % 3 == 0 {
-            through_text(&kept)
-        } else {
-            kept
-        };
+        let kept = if k % 3 == 0 { through_text(&kept) } else { kept };
         others.push(taken_up(scene, &kept));
     }
 }
@@ -153,10 +144,7 @@ fn what_is_torn_stays_torn() {
         pin = [{ at = ['left'] }, { at = ['right'], shift = { by = [0.9, 0, 0], start = 0, end = 0.1 } }]",
     );
     let acts: &[Act] = &[|_| (), |_| (), |run| run.set_wind(false), |_| (), |_| ()];
-    for method in METHODS
-        .iter()
-        .filter(|m| !m.positions_only() && !m.plain_only())
-    {
+    for method in METHODS.iter().filter(|m| !m.positions_only() && !m.plain_only()) {
         let control = method.control(if method.is_adaptive() { 1e-5 } else { 0.005 });
         check(&scene, method, control, acts);
         let mut run = Simulation::new(scene.clone(), method, control).unwrap();
@@ -200,11 +188,7 @@ fn a_moment_is_small_and_goes_on() {
     assert_eq!((again.state(), again.time()), (run.state(), run.time()));
     run.advance_to(0.2).unwrap();
     again.advance_to(0.2).unwrap();
-    let apart = run
-        .state()
-        .iter()
-        .zip(again.state())
-        .map(|(a, b)| (a - b).abs());
+    let apart = run.state().iter().zip(again.state()).map(|(a, b)| (a - b).abs());
     assert!(apart.fold(0.0, f64::max) < 1e-5);
 }
 
@@ -246,10 +230,7 @@ fn checkpoints_that_do_not_fit_are_refused_and_change_nothing() {
         run.advance_to(0.01).unwrap();
         c.progress = run.checkpoint().progress;
     });
-    assert!(
-        run.restore(&simulation("chain", "rk4", 0.01).checkpoint())
-            .is_err()
-    );
+    assert!(run.restore(&simulation("chain", "rk4", 0.01).checkpoint()).is_err());
     run.restore(&other.checkpoint()).unwrap();
     let text = serde_json::to_string(&before).unwrap();
     let error = serde_json::from_str::<Checkpoint>(&text.replace("dopri5", "magic"));

@@ -15,8 +15,7 @@ fn worst_stretch(
     let mut worst: f64 = 0.0;
     for frame in 0..(until / FRAME) as u64 {
         hand(run, frame);
-        run.advance_to(run.time() + FRAME)
-            .unwrap_or_else(|e| panic!("{e}"));
+        run.advance_to(run.time() + FRAME).unwrap_or_else(|e| panic!("{e}"));
         worst = worst.max(run.largest_stretch().unwrap());
     }
     worst
@@ -33,11 +32,7 @@ fn it_hangs_without_sagging() {
     let energy = run.energy().unwrap();
     assert!(energy.kinetic < 1e-4, "it comes to rest: {energy:?}");
     assert!(rest <= 1.25 && swaying < 2.0, "{rest} {swaying}");
-    assert!(
-        run.lowest() > 0.05,
-        "it hangs free of the floor: {}",
-        run.lowest()
-    );
+    assert!(run.lowest() > 0.05, "it hangs free of the floor: {}", run.lowest());
 }
 
 /// The cloth survives three simulated minutes of swing, wind, and pulls at any particle in all
@@ -49,9 +44,7 @@ fn three_minutes_of_swing_wind_and_pulling() {
     run.set_swinging(true);
     let mut seed = 12345u64;
     let mut random = move || {
-        seed = seed
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 11) as f64 / (1u64 << 53) as f64
     };
     let mut target = Vector3::zeros();

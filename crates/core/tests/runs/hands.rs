@@ -134,12 +134,7 @@ fn a_sphere_goes_where_it_is_pulled_pushes_cloth_and_comes_back_with_a_reset() {
     // A floor cannot be grabbed, and the scene has no other obstacle.
     let mut run = simulation("cloth", "rk4", 0.01);
     assert!(run.grab_obstacle(1).is_err());
-    assert!(
-        run.grab_obstacle(0)
-            .unwrap_err()
-            .to_string()
-            .contains("a floor cannot be pushed")
-    );
+    assert!(run.grab_obstacle(0).unwrap_err().to_string().contains("a floor cannot be pushed"));
     simulation("simple", "rk4", 0.01).grab_obstacle(0).unwrap();
 }
 
@@ -181,11 +176,7 @@ fn a_particle_is_pinned_and_let_go() {
     assert_eq!(run.toggle_pin(211), Ok(true));
     let (before, corner) = (run.position(211), run.position(0));
     run.advance_to(2.0).unwrap();
-    assert_relative_eq!(
-        run.position(211) - before,
-        run.position(0) - corner,
-        epsilon = 1e-9
-    );
+    assert_relative_eq!(run.position(211) - before, run.position(0) - corner, epsilon = 1e-9);
     assert!(run.toggle_pin(400).is_err());
     run.reset();
     assert!(!pinned(&run, 211));
@@ -195,11 +186,7 @@ fn a_particle_is_pinned_and_let_go() {
 #[test]
 fn a_rewound_run_repeats_itself() {
     for method in ["trapezoid", "verlet", "dop853"] {
-        let value = if method == "dop853" {
-            1e-8
-        } else {
-            0.007_812_5
-        };
+        let value = if method == "dop853" { 1e-8 } else { 0.007_812_5 };
         let mut run = simulation("cloth", method, value);
         run.set_swinging(true);
         run.advance_to(0.5).unwrap();

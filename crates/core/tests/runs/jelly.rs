@@ -13,11 +13,7 @@ fn lattice(grid: [usize; 3]) -> Scene {
         "[[jelly]]\ngrid = {grid:?}\nsize = [1, 2, 3]\nmass = 1\nstiffness = [1, 1, 1]\nat = [0, 0, 0]"
     );
     let none = &mut |_: &str| Err(String::new());
-    Description::parse(&text)
-        .unwrap()
-        .build(None, none)
-        .unwrap()
-        .scene
+    Description::parse(&text).unwrap().build(None, none).unwrap().scene
 }
 
 /// Volume within the skin (m3): a sixth of the sum of a . (b x c) over its triangles.
@@ -37,20 +33,14 @@ fn springs_are_counted_by_kind() {
         let network = scene.model.network().unwrap();
         let count = |kind| network.springs().filter(|s| s.kind == kind).count();
         let pairs = |a: usize, b: usize, c: usize| (a - 1) * b * c;
-        assert_eq!(
-            count(SpringKind::Structural),
-            pairs(x, y, z) + pairs(y, x, z) + pairs(z, x, y)
-        );
+        assert_eq!(count(SpringKind::Structural), pairs(x, y, z) + pairs(y, x, z) + pairs(z, x, y));
         let faces = |a: usize, b: usize, c: usize| 2 * (a - 1) * (b - 1) * c;
         assert_eq!(
             count(SpringKind::Shear),
             faces(x, y, z) + faces(y, z, x) + faces(x, z, y) + 4 * (x - 1) * (y - 1) * (z - 1)
         );
         let next = |a: usize, b: usize, c: usize| a.saturating_sub(2) * b * c;
-        assert_eq!(
-            count(SpringKind::Bend),
-            next(x, y, z) + next(y, x, z) + next(z, x, y)
-        );
+        assert_eq!(count(SpringKind::Bend), next(x, y, z) + next(y, x, z) + next(z, x, y));
     }
 }
 
@@ -79,11 +69,7 @@ fn the_skin_is_closed_and_faces_outwards() {
             *edges.entry(edge).or_insert(0) += 1;
         }
     }
-    assert!(
-        edges
-            .iter()
-            .all(|([a, b], n)| *n == 1 && edges.contains_key(&[*b, *a]))
-    );
+    assert!(edges.iter().all(|([a, b], n)| *n == 1 && edges.contains_key(&[*b, *a])));
     let run = Simulation::new(scene, method("r"), Control::Step(0.01)).unwrap();
     assert!((volume(&run) - 6.0).abs() < 1e-12);
 }

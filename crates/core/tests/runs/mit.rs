@@ -7,15 +7,11 @@ use approx::assert_abs_diff_eq;
 
 #[test]
 fn runs_that_survive() {
-    for (method, step, until) in [
-        ("rk4", 0.02, 8.0),
-        ("rk4", 0.03, 8.0),
-        ("trapezoid", 0.005, 8.0),
-        ("euler", 0.0003, 6.0),
-    ] {
+    for (method, step, until) in
+        [("rk4", 0.02, 8.0), ("rk4", 0.03, 8.0), ("trapezoid", 0.005, 8.0), ("euler", 0.0003, 6.0)]
+    {
         let mut run = simulation("mit", method, step);
-        run.advance_to(until)
-            .unwrap_or_else(|e| panic!("{method} {step}: {e}"));
+        run.advance_to(until).unwrap_or_else(|e| panic!("{method} {step}: {e}"));
         let stretch = run.largest_stretch().unwrap();
         assert!(stretch < 6.0, "{method} {step}: stretched {stretch} times");
     }
@@ -23,19 +19,14 @@ fn runs_that_survive() {
 
 #[test]
 fn runs_that_blow_up() {
-    for (method, step, earliest, latest) in [
-        ("rk4", 0.04, 0.68, 0.76),
-        ("trapezoid", 0.01, 2.7, 3.0),
-        ("euler", 0.001, 4.0, 6.9),
-    ] {
+    for (method, step, earliest, latest) in
+        [("rk4", 0.04, 0.68, 0.76), ("trapezoid", 0.01, 2.7, 3.0), ("euler", 0.001, 4.0, 6.9)]
+    {
         let Err(Error::BlowUp(blow_up)) = simulation("mit", method, step).advance_to(10.0) else {
             panic!("{method} {step} survived")
         };
         println!("{method} {step}: {blow_up}");
-        assert!(
-            (earliest..=latest).contains(&blow_up.time),
-            "{method} {step}: {blow_up}"
-        );
+        assert!((earliest..=latest).contains(&blow_up.time), "{method} {step}: {blow_up}");
         assert_eq!(blow_up.step, (blow_up.time / step).round() as u64);
     }
 }

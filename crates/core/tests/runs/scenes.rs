@@ -10,21 +10,12 @@ fn cloth_springs_are_counted_by_kind() {
             let scene = scene_with_grid(name, rows, cols);
             let network = scene.model.network().unwrap();
             let count = |kind| network.springs().filter(|s| s.kind == kind).count();
-            assert_eq!(
-                count(SpringKind::Structural),
-                rows * (cols - 1) + cols * (rows - 1)
-            );
+            assert_eq!(count(SpringKind::Structural), rows * (cols - 1) + cols * (rows - 1));
             assert_eq!(count(SpringKind::Shear), 2 * (rows - 1) * (cols - 1));
-            assert_eq!(
-                count(SpringKind::Bend),
-                rows * (cols - 2) + cols * (rows - 2)
-            );
+            assert_eq!(count(SpringKind::Bend), rows * (cols - 2) + cols * (rows - 2));
         }
     }
-    assert_eq!(
-        scene("mit").model.network().unwrap().springs().count(),
-        1202
-    );
+    assert_eq!(scene("mit").model.network().unwrap().springs().count(), 1202);
 }
 
 /// A cloth that cannot be stepped in sweeps over its rows is half as fast.
@@ -69,14 +60,9 @@ fn cloth_springs_join_the_right_particles() {
 
 #[test]
 fn grids_that_make_no_sense_are_refused() {
-    for (rows, cols) in [
-        (0, 5),
-        (1, 5),
-        (5, 1),
-        (usize::MAX, 2),
-        (4_294_967_295, 4_294_967_295),
-        (2049, 2048),
-    ] {
+    for (rows, cols) in
+        [(0, 5), (1, 5), (5, 1), (usize::MAX, 2), (4_294_967_295, 4_294_967_295), (2049, 2048)]
+    {
         let error = Grid::new(rows, cols).unwrap_err().to_string();
         assert!(error.contains(&MAX_PARTICLES.to_string()), "{error}");
     }
@@ -114,9 +100,7 @@ fn default_controls_hold_everywhere() {
             // Positions and velocities.
             let halves = 6 * run.particles().min(run.state().len() / 6);
             assert!(
-                run.state()[..halves]
-                    .iter()
-                    .all(|y| y.abs() < 20.0 * radius),
+                run.state()[..halves].iter().all(|y| y.abs() < 20.0 * radius),
                 "{} on {}",
                 method.name,
                 entry.name
@@ -129,9 +113,7 @@ fn default_controls_hold_everywhere() {
 #[test]
 fn default_controls_hold_on_other_grids() {
     on_all_cores([(8, 8), (40, 40), (60, 20), (20, 60)], |(rows, cols)| {
-        for method in integrators::METHODS
-            .iter()
-            .filter(|m| !m.positions_only() && !m.plain_only())
+        for method in integrators::METHODS.iter().filter(|m| !m.positions_only() && !m.plain_only())
         {
             let grid = Grid::new(rows, cols).unwrap();
             let setup = a3_scenes::find("cloth").unwrap().build(Some(grid)).unwrap();
@@ -140,13 +122,8 @@ fn default_controls_hold_on_other_grids() {
                 Control::Tolerance(_) => method.default_control,
             };
             let mut run = Simulation::new(setup.scene, method, control).unwrap();
-            run.advance_to(1.0)
-                .unwrap_or_else(|e| panic!("{} on {rows}x{cols}: {e}", method.name));
-            assert!(
-                run.largest_stretch().unwrap() < 2.5,
-                "{} on {rows}x{cols}",
-                method.name
-            );
+            run.advance_to(1.0).unwrap_or_else(|e| panic!("{} on {rows}x{cols}: {e}", method.name));
+            assert!(run.largest_stretch().unwrap() < 2.5, "{} on {rows}x{cols}", method.name);
         }
     });
 }

@@ -12,12 +12,7 @@ use approx::assert_relative_eq;
 
 #[test]
 fn the_end_is_hit_exactly_and_no_step_is_longer() {
-    for (step, until, steps) in [
-        (0.01, 1.0, 100),
-        (0.3, 1.0, 4),
-        (0.1, 0.35, 4),
-        (5.0, 0.1, 1),
-    ] {
+    for (step, until, steps) in [(0.01, 1.0, 100), (0.3, 1.0, 4), (0.1, 0.35, 4), (5.0, 0.1, 1)] {
         let mut run = simulation("simple", "rk4", step);
         run.advance_to(until).unwrap();
         assert_eq!((run.time(), run.steps()), (until, steps));
@@ -72,8 +67,7 @@ fn a_reset_run_repeats_itself_to_the_bit() {
 fn method_and_step_change_on_the_way() {
     let mut run = simulation("pendulum", "trapezoid", 0.01);
     run.take_steps(50).unwrap();
-    run.set_method(method("verlet"), Control::Step(0.01))
-        .unwrap();
+    run.set_method(method("verlet"), Control::Step(0.01)).unwrap();
     run.set_control(Control::Step(0.001)).unwrap();
     run.take_steps(500).unwrap();
     assert_relative_eq!(run.time(), 1.0, epsilon = 1e-12);
@@ -87,10 +81,7 @@ fn method_and_step_change_on_the_way() {
     let mut circle = simulation("simple", "rk4", 0.01);
     assert_eq!(
         circle.set_method(method("verlet"), Control::Step(0.01)),
-        Err(Error::Unsupported {
-            method: method("verlet").title,
-            why: Refusal::LacksMasses
-        })
+        Err(Error::Unsupported { method: method("verlet").title, why: Refusal::LacksMasses })
     );
     assert_eq!(circle.method().name, "rk4");
     circle.take_steps(1).unwrap();
@@ -174,11 +165,7 @@ fn a_moving_sphere_pushes_without_friction() {
     )
     .unwrap();
     run.take_steps(1).unwrap();
-    assert_relative_eq!(
-        run.position(0),
-        Vector3::new(0.2 + 1.0, 0.0, 0.0),
-        epsilon = 1e-12
-    );
+    assert_relative_eq!(run.position(0), Vector3::new(0.2 + 1.0, 0.0, 0.0), epsilon = 1e-12);
     let v = run.velocities();
     assert_relative_eq!(
         Vector3::new(v[0], v[1], v[2]),
@@ -217,31 +204,18 @@ impl ParticleSystem for Failing {
 
 #[test]
 fn what_is_not_finite_is_a_blow_up_that_names_its_particle() {
-    for value in [
-        || f64::NAN,
-        || f64::INFINITY,
-        || f64::NEG_INFINITY,
-        || 1e300,
-    ] {
+    for value in [|| f64::NAN, || f64::INFINITY, || f64::NEG_INFINITY, || 1e300] {
         for entry in [0, 1, 4] {
             let model = Model::Points(Arc::new(Failing(value, entry)));
-            let mut run = Simulation::new(
-                bare(model, vec![0.5; 6]),
-                method("euler"),
-                Control::Step(0.1),
-            )
-            .unwrap();
+            let mut run =
+                Simulation::new(bare(model, vec![0.5; 6]), method("euler"), Control::Step(0.1))
+                    .unwrap();
             let Err(Error::BlowUp(lost)) = run.advance_to(1.0) else {
                 panic!("{} survived", value())
             };
-            let cause = Cause::NotFinite {
-                particle: entry % 2,
-            };
+            let cause = Cause::NotFinite { particle: entry % 2 };
             assert_eq!((lost.step, lost.cause), (5, cause), "{}", value());
-            assert_eq!(
-                (lost.control, lost.method),
-                (Control::Step(0.1), "explicit Euler")
-            );
+            assert_eq!((lost.control, lost.method), (Control::Step(0.1), "explicit Euler"));
             assert!(run.state().iter().all(|y| y.is_finite()));
             assert_eq!((run.time(), run.steps()), (0.0, 0));
         }
@@ -257,31 +231,17 @@ fn the_state_goes_back_to_the_time_it_had_whatever_the_step_is_by_then() {
     run.set_control(Control::Step(0.7)).unwrap();
     while run.take_steps(1).is_ok() {}
     // The radius after n steps of 0.5 s is 1.25^(n/2), which determines the time.
-    assert_relative_eq!(
-        run.position(0).norm(),
-        1.25f64.powf(run.time()),
-        max_relative = 1e-12
-    );
+    assert_relative_eq!(run.position(0).norm(), 1.25f64.powf(run.time()), max_relative = 1e-12);
     assert_relative_eq!(run.time(), 0.5 * run.steps() as f64, max_relative = 1e-12);
     assert!(run.position(0).norm() > 1.5);
 }
 
 #[test]
 fn scenes_that_do_not_fit_their_model_are_refused() {
-    let scene = |length: usize| {
-        bare(
-            Model::Points(Arc::new(Failing(|| 0.0, 0))),
-            vec![0.0; length],
-        )
-    };
+    let scene =
+        |length: usize| bare(Model::Points(Arc::new(Failing(|| 0.0, 0))), vec![0.0; length]);
     let refused = Simulation::new(scene(5), method("euler"), Control::Step(0.1)).err();
-    assert_eq!(
-        refused,
-        Some(Error::Dimension {
-            expected: 6,
-            found: 5
-        })
-    );
+    assert_eq!(refused, Some(Error::Dimension { expected: 6, found: 5 }));
     let mut run = Simulation::new(scene(6), method("euler"), Control::Step(0.1)).unwrap();
     for end in [f64::NAN, f64::INFINITY] {
         assert!(run.advance_to(end).is_err());

@@ -24,11 +24,7 @@ fn limited(method_name: &str, value: f64, limit: Option<f64>) -> Simulation {
 
 #[test]
 fn a_curtain_at_rest_is_within_the_limit() {
-    for (name, step) in [
-        ("trapezoid", 0.01),
-        ("implicit", 1.0 / 60.0),
-        ("verlet", 1e-3),
-    ] {
+    for (name, step) in [("trapezoid", 0.01), ("implicit", 1.0 / 60.0), ("verlet", 1e-3)] {
         let mut run = limited(name, step, Some(1.1));
         run.advance_to(9.0).unwrap();
         let mut worst: f64 = 0.0;
@@ -53,16 +49,11 @@ fn every_method_runs_within_the_limit() {
         let mut worst: f64 = 0.0;
         for frame in 1..=60 {
             let time = f64::from(frame) / 60.0;
-            run.advance_to(time)
-                .unwrap_or_else(|e| panic!("{}: {e}", method.name));
+            run.advance_to(time).unwrap_or_else(|e| panic!("{}: {e}", method.name));
             worst = worst.max(run.largest_stretch().unwrap());
         }
         let (steps, work) = (run.steps(), run.work());
-        println!(
-            "{}: {steps} steps, {:.0}, {worst:.4}",
-            method.name,
-            work.total()
-        );
+        println!("{}: {steps} steps, {:.0}, {worst:.4}", method.name, work.total());
         assert!(worst < 1.13, "{}: {worst}", method.name);
         let bounded = !method.is_adaptive() || steps < 3000;
         assert!(bounded, "{}: {steps} steps", method.name);
@@ -128,16 +119,9 @@ fn the_limit_adds_no_kinetic_energy() {
         let mut y = y0.clone();
         let strained = limiter.resolve(&limit, &w, h, &mut y);
         assert!(strained.sweeps > 1 && (strained.excess - (1.3 / 1.1 - 1.0)).abs() < 1e-12);
-        assert!(
-            limit.excess(&y[..108]) < 0.02,
-            "{}",
-            limit.excess(&y[..108])
-        );
+        assert!(limit.excess(&y[..108]) < 0.02, "{}", limit.excess(&y[..108]));
         let (before, after) = (kinetic(&y0), kinetic(&y));
-        assert!(
-            after <= before * (1.0 + 1e-12),
-            "h = {h}: {before} to {after}"
-        );
+        assert!(after <= before * (1.0 + 1e-12), "h = {h}: {before} to {after}");
     }
     let mut still = y0.clone();
     still[108..].fill(0.0);
@@ -171,10 +155,7 @@ fn a_hand_does_not_blow_it_up() {
             let target = 4.0 * (1.3 * frame as f64).sin();
             run.pull(Vector3::new(target, 2.0, -target));
             run.advance_to((frame + 1) as f64 / 60.0).unwrap();
-            fastest = run
-                .velocities()
-                .iter()
-                .fold(fastest, |most, v| most.max(v.abs()));
+            fastest = run.velocities().iter().fold(fastest, |most, v| most.max(v.abs()));
         }
         run.release();
         println!("{name}: up to {fastest:.0} m/s");
@@ -194,12 +175,7 @@ fn flying() -> Simulation {
     let law = SpringLaw::new(1.0, 1.0, 0.0).unwrap();
     let kind = SpringKind::Structural;
     for i in 0..2 {
-        let spring = Spring {
-            kind,
-            i,
-            j: i + 1,
-            law,
-        };
+        let spring = Spring { kind, i, j: i + 1, law };
         network.add_spring(spring).unwrap();
     }
     network.pin(0, Path::Still(Vector3::zeros())).unwrap();

@@ -27,10 +27,7 @@ fn stiffness_and_damping_are_scaled_each_by_itself() {
     let mut other = own.clone();
     other.scale_springs(3.0, 0.5).unwrap();
     for (a, b) in own.springs().zip(other.springs()) {
-        assert_eq!(
-            (3.0 * a.law.stiffness, 0.5 * a.law.damping),
-            (b.law.stiffness, b.law.damping)
-        );
+        assert_eq!((3.0 * a.law.stiffness, 0.5 * a.law.damping), (b.law.stiffness, b.law.damping));
         assert_eq!(a.law.rest_length, b.law.rest_length);
     }
     assert!(other.scale_springs(0.0, 1.0).is_err());
@@ -60,18 +57,13 @@ fn torn_springs_stay_torn_when_the_others_are_exchanged() {
 /// adjusted scene, even if the method had scratch for damped kicks.
 #[test]
 fn an_adjusted_run_is_that_of_the_adjusted_scene() {
-    for method in integrators::METHODS
-        .iter()
-        .filter(|m| !m.positions_only() && !m.plain_only())
-    {
+    for method in integrators::METHODS.iter().filter(|m| !m.positions_only() && !m.plain_only()) {
         let change = |network: &mut Network| {
             network.scale_springs(2.0, 0.0).unwrap();
             network.set_gravity(Vector3::new(0.0, -3.0, 0.0));
         };
         let mut begun_so = scene("cloth");
-        let a3_core::Model::Network(network) = &mut begun_so.model else {
-            unreachable!()
-        };
+        let a3_core::Model::Network(network) = &mut begun_so.model else { unreachable!() };
         change(network);
         let step = if method.is_adaptive() { 1e-4 } else { 0.001 };
         let mut expected = start(begun_so, method.name, step);
@@ -167,16 +159,7 @@ fn a_run_goes_on_from_its_description() {
             network.scale_springs(stiffness, damping).unwrap();
             network.set_gravity(Vector3::new(0.1, -7.0, 0.0));
             network.set_drag(0.013).unwrap();
-            if matches!(
-                network.obstacles(),
-                [
-                    Obstacle {
-                        shape: Shape::Sphere { .. },
-                        ..
-                    },
-                    ..
-                ]
-            ) {
+            if matches!(network.obstacles(), [Obstacle { shape: Shape::Sphere { .. }, .. }, ..]) {
                 let shape = Shape::Sphere { radius: 1.25 };
                 network.reshape_obstacle(0, shape).unwrap();
             }
@@ -209,11 +192,7 @@ fn a_run_goes_on_from_its_description() {
             }
         };
         // Where surfaces touch, skins are recomputed for springs that were tuned.
-        if run
-            .model()
-            .network()
-            .is_some_and(|n| n.contact_layer().is_some())
-        {
+        if run.model().network().is_some_and(|n| n.contact_layer().is_some()) {
             continue;
         }
         close("forces", &forces(&run), &forces(&again), 1e-12);
@@ -230,10 +209,7 @@ fn what_was_freed_is_described_as_free() {
     run.advance_to(0.1).unwrap();
     let mut description = a3_scenes::find("cloth").unwrap().description().unwrap();
     snapshot::begin_with(&mut description, run.model(), &run.moment());
-    let scene = description
-        .build(None, &mut |_| Err("none".into()))
-        .unwrap()
-        .scene;
+    let scene = description.build(None, &mut |_| Err("none".into())).unwrap().scene;
     assert_eq!(scene.model.network().unwrap().pins().count(), 0);
 }
 
@@ -246,10 +222,7 @@ fn paths_go_on_from_where_they_are() {
             pin = [{ at = ['first'], shift = { by = [0.4, 0, 0], start = 0.5, end = 1.5 } }] }]
         sphere = [{ center = [0, -3, 0], radius = 0.5, sine = { amplitude = [0, 0.5, 0], rate = 2, phase = 0.3 } }]";
     let build = |description: &Description| {
-        description
-            .build(None, &mut |_| Err("none".into()))
-            .unwrap()
-            .scene
+        description.build(None, &mut |_| Err("none".into())).unwrap().scene
     };
     let description = Description::parse(text).unwrap();
     for time in [0.2, 1.0, 2.0] {
@@ -292,20 +265,12 @@ buckling = { bending = 0.0001, compression = 10 }
 ";
     let no_files = &mut |_: &str| Err(String::new());
     let mut description = Description::parse(text).unwrap();
-    let mut run = start(
-        description.build(None, no_files).unwrap().scene,
-        "rk4",
-        0.01,
-    );
+    let mut run = start(description.build(None, no_files).unwrap().scene, "rk4", 0.01);
     run.adjust(|network| network.scale_springs(3.0, 1.0).unwrap());
     run.advance_to(1.5).unwrap();
     snapshot::scale_springs(&mut description, 3.0, 1.0);
     snapshot::begin_with(&mut description, run.model(), &run.moment());
-    let again = start(
-        description.build(None, no_files).unwrap().scene,
-        "rk4",
-        0.01,
-    );
+    let again = start(description.build(None, no_files).unwrap().scene, "rk4", 0.01);
     let (now, then) = (network(&run), network(&again));
     for later in [0.0, 0.7, 9.0] {
         let paths = |network: &Network, t: f64| {

@@ -77,19 +77,14 @@ particles = { positions = [[0, 1, 0], [0, 2, 0]], mass = 1, springs = [[0, 1, 10
 sphere = [{ center = [3, 0, 0], radius = 0.5, turn = { axis = [0, 1, 0], about = [0, 0, 0], rate = 1 } }]
 ";
     let description = Description::parse(text).unwrap();
-    let scene = description
-        .build(None, &mut |_| Err(String::new()))
-        .unwrap()
-        .scene;
+    let scene = description.build(None, &mut |_| Err(String::new())).unwrap().scene;
     let mut run = start(scene.clone(), "rk4");
     run.advance_to(0.5).unwrap();
     let ball = |run: &Simulation| network(run).obstacles()[0].at(run.time());
     let before = ball(&run);
     let written = serde_json::to_string(&run.checkpoint()).unwrap();
     let mut other = start(scene, "verlet");
-    other
-        .restore(&serde_json::from_str(&written).unwrap())
-        .unwrap();
+    other.restore(&serde_json::from_str(&written).unwrap()).unwrap();
     run.advance_to(1.0).unwrap();
     other.advance_to(1.0).unwrap();
     assert_eq!(run.state(), other.state());

@@ -11,10 +11,7 @@ struct Random(u64);
 
 impl Random {
     fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         let unit = (self.0 >> 11) as f64 / (1u64 << 53) as f64;
         low + (high - low) * unit
     }
@@ -44,13 +41,7 @@ impl Shaken {
     }
 
     fn scene(&self) -> String {
-        let Self {
-            stiffness,
-            damping,
-            amplitude,
-            rate,
-            phase,
-        } = self;
+        let Self { stiffness, damping, amplitude, rate, phase } = self;
         let begin = amplitude * phase.sin();
         format!(
             "[particles]\npositions = [[0, 0, 0], [{}, 0, 0]]\nmass = 1\n\
@@ -107,9 +98,7 @@ fn work_of_pins_is_that_of_the_exact_motion() {
             ("verlet", Control::Step(0.02 / own), 2e-2),
             ("implicit-midpoint", Control::Step(0.02 / own), 2e-2),
         ] {
-            let Some(method) = a3_core::integrators::find(name) else {
-                panic!("no method {name}")
-            };
+            let Some(method) = a3_core::integrators::find(name) else { panic!("no method {name}") };
             if method.positions_only() && shaken.damping > 0.0 {
                 continue;
             }
@@ -130,16 +119,13 @@ fn work_of_pins_is_that_of_the_exact_motion() {
 #[test]
 fn how_often_one_looks_changes_no_work() {
     let shaken = Shaken::random(&mut Random(7));
-    for (name, control) in [
-        ("verlet", Control::Step(0.001)),
-        ("dopri5", Control::Tolerance(1e-5)),
-    ] {
+    for (name, control) in [("verlet", Control::Step(0.001)), ("dopri5", Control::Tolerance(1e-5))]
+    {
         let [once, often] = [1, 97].map(|frames| {
             let scene = described(&shaken.scene());
             let mut run = Simulation::new(scene, method(name), control).unwrap();
             for k in 1..=frames {
-                run.advance_to(0.5 * f64::from(k) / f64::from(frames))
-                    .unwrap();
+                run.advance_to(0.5 * f64::from(k) / f64::from(frames)).unwrap();
             }
             ["work", "turnover", "gain"].map(|key| balance(&run, key).to_bits())
         });
@@ -182,10 +168,7 @@ fn a_sheet_that_is_blown_away_is_not_accused() {
         let Ok(description) = a3_scenes::Description::parse(&sheet) else {
             continue;
         };
-        let scene = description
-            .build(None, &mut |_| unreachable!())
-            .unwrap()
-            .scene;
+        let scene = description.build(None, &mut |_| unreachable!()).unwrap().scene;
         for (name, control) in [
             ("rk4", Control::Step(0.002)),
             ("verlet", Control::Step(0.002)),
@@ -226,10 +209,7 @@ fn a_run_shorter_than_a_look_is_looked_at() {
     let Err(Error::BlowUp(lost)) = end else {
         panic!("it went on");
     };
-    assert!(
-        matches!(lost.cause, Cause::Gained { .. } | Cause::Away { .. }),
-        "{lost}"
-    );
+    assert!(matches!(lost.cause, Cause::Gained { .. } | Cause::Away { .. }), "{lost}");
     assert_eq!(run.conclude(), Err(lost.into()));
     // A chart sees it too.
     let mut run = Simulation::new(described(short), method("v"), Control::Step(0.0028)).unwrap();

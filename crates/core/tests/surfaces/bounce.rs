@@ -12,13 +12,8 @@ const UNTIL: f64 = 1.0;
 
 /// A particle above a floor, or a particle above a free triangle, with gravity and a little drag.
 fn system(on_floor: bool) -> (Network, Vec<f64>) {
-    let skin = Skin {
-        thickness: 0.2,
-        stiffness: 600.0,
-        damping: 0.0,
-        friction: 0.0,
-        ..Skin::default()
-    };
+    let skin =
+        Skin { thickness: 0.2, stiffness: 600.0, damping: 0.0, friction: 0.0, ..Skin::default() };
     let count = if on_floor { 1 } else { 4 };
     let mut network = Network::new(vec![1.0; count]).unwrap();
     if on_floor {
@@ -32,19 +27,10 @@ fn system(on_floor: bool) -> (Network, Vec<f64>) {
         network.set_triangles([[1, 2, 3]]).unwrap();
     }
     network.set_drag(0.3).unwrap();
-    let touch = Touch {
-        skins: vec![skin; count],
-        edges: vec![[0, 0]],
-        drops: vec![],
-        bodies: true,
-    };
+    let touch =
+        Touch { skins: vec![skin; count], edges: vec![[0, 0]], drops: vec![], bodies: true };
     network.set_touch(Some(touch)).unwrap();
-    let places = [
-        [0.0, 0.35, 0.0],
-        [1.0, 0.0, 0.1],
-        [-0.6, 0.05, 0.9],
-        [-0.5, 0.0, -0.8],
-    ];
+    let places = [[0.0, 0.35, 0.0], [1.0, 0.0, 0.1], [-0.6, 0.05, 0.9], [-0.5, 0.0, -0.8]];
     let mut y = vec![0.0; 6 * count];
     for (i, place) in places[..count].iter().enumerate() {
         for axis in 0..3 {
@@ -96,20 +82,12 @@ impl Bounce {
             y = after(end - t, &y);
         }
         moments.push(UNTIL);
-        Self {
-            network,
-            y0,
-            moments,
-            exact: y,
-        }
+        Self { network, y0, moments, exact: y }
     }
 
     /// Error of a run in `count` steps, regardless of touches.
     fn error(&self, method: &Method, count: u32) -> f64 {
-        distance(
-            &steps(&self.network, method, &self.y0, count, UNTIL),
-            &self.exact,
-        )
+        distance(&steps(&self.network, method, &self.y0, count, UNTIL), &self.exact)
     }
 
     /// Error of a run in `count` steps in each part between touches.
@@ -141,9 +119,7 @@ fn steps(network: &Network, method: &Method, y0: &[f64], count: u32, time: f64) 
     let mut integrator = method.integrator(network).unwrap();
     let (mut y, h) = (y0.to_vec(), time / f64::from(count));
     for k in 0..count {
-        integrator
-            .step(network, f64::from(k) * h, h, &mut y)
-            .unwrap();
+        integrator.step(network, f64::from(k) * h, h, &mut y).unwrap();
     }
     y
 }
@@ -182,12 +158,7 @@ fn methods_keep_their_order_up_to_four() {
 fn steps_that_end_where_touches_do_keep_every_order() {
     for on_floor in [true, false] {
         let bounce = Bounce::new(on_floor);
-        for (name, count) in [
-            ("verner65", 24),
-            ("srkn11", 12),
-            ("dop853", 8),
-            ("dprkn86", 8),
-        ] {
+        for (name, count) in [("verner65", 24), ("srkn11", 12), ("dop853", 8), ("dprkn86", 8)] {
             let m = method(name);
             let order =
                 (bounce.error_in_parts(m, count) / bounce.error_in_parts(m, 2 * count)).log2();
@@ -204,28 +175,12 @@ fn steps_that_end_where_touches_do_keep_every_order() {
 #[test]
 fn the_chart_of_a_bounce_has_a_sure_reference() {
     let scene = described(include_str!("../../../../docs/scenes/bounce.toml"));
-    let precision = Precision {
-        metric: Metric::Position,
-        uncertainty: 1e-10,
-        max_work: 80_000.0,
-    };
+    let precision = Precision { metric: Metric::Position, uncertainty: 1e-10, max_work: 80_000.0 };
     let (frames, scope, go_on) = (Frames::new(UNTIL), Scope::default(), || true);
-    let reference = Reference::new(&scene, frames, scope, precision, &go_on)
-        .unwrap()
-        .unwrap();
-    assert!(
-        reference.floor.position < 1e-9,
-        "{:e} m",
-        reference.floor.position
-    );
-    let best = choose(&scene, &reference, Metric::Position, 1e-4, &go_on, |_| ())
-        .unwrap()
-        .unwrap();
+    let reference = Reference::new(&scene, frames, scope, precision, &go_on).unwrap().unwrap();
+    assert!(reference.floor.position < 1e-9, "{:e} m", reference.floor.position);
+    let best = choose(&scene, &reference, Metric::Position, 1e-4, &go_on, |_| ()).unwrap().unwrap();
     let outcome = best[0].outcome;
-    assert!(
-        outcome.errors.position <= 1e-4,
-        "{:e} m",
-        outcome.errors.position
-    );
+    assert!(outcome.errors.position <= 1e-4, "{:e} m", outcome.errors.position);
     assert_eq!(outcome.guarded.impulses, 0);
 }

@@ -31,16 +31,9 @@ fn body(kind: usize, height: f64, speed: f64, friction: f64, random: &mut Random
     let place = match kind {
         0 => format!("at = [{x}, {y}, {}]\n", z - 0.4),
         1 => format!("at = [{x}, {y}, {z}]\n"),
-        _ => format!(
-            "from = [{}, {y}, {z}]\nto = [{}, {y}, {z}]\n",
-            x - 0.5,
-            x + 0.5
-        ),
+        _ => format!("from = [{}, {y}, {z}]\nto = [{}, {y}, {z}]\n", x - 0.5, x + 0.5),
     };
-    format!(
-        "{}{place}velocity = [{u}, {v}, {w}]\nfriction = {friction}\n",
-        BODIES[kind]
-    )
+    format!("{}{place}velocity = [{u}, {v}, {w}]\nfriction = {friction}\n", BODIES[kind])
 }
 
 /// Twice the kinetic energy (J), the sum of m (v, x), and that of m |v| and m |x| (SI units).
@@ -82,18 +75,13 @@ fn the_guard_adds_no_energy_and_keeps_momentum() {
                 let mut loose = run.state().to_vec();
                 let system = run.model().system();
                 let mut integrator = verlet.integrator(system).unwrap();
-                integrator
-                    .step(system, run.time(), STEP, &mut loose)
-                    .unwrap();
+                integrator.step(system, run.time(), STEP, &mut loose).unwrap();
                 let guarded = run.guarded();
                 run.take_steps(1).unwrap();
                 let (energy, vectors, sizes) = sums(&masses, &loose);
                 let (after, kept, _) = sums(&masses, run.state());
                 let what = format!("step {step} of {text}");
-                assert!(
-                    after <= energy * (1.0 + 1e-14),
-                    "{energy} to {after}: {what}"
-                );
+                assert!(after <= energy * (1.0 + 1e-14), "{energy} to {after}: {what}");
                 if run.guarded().cuts == guarded.cuts {
                     for (vector, kept, size) in [0, 1].map(|k| (vectors[k], kept[k], sizes[k])) {
                         let error = (kept - vector).norm() / size;

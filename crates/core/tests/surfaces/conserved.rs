@@ -50,24 +50,10 @@ fn collisions_of_free_cloths_conserve_momenta_and_energy() {
             worst = worst.max((found.total() / energy - 1.0).abs());
         }
         assert_eq!(run.guarded().impulses, 0, "the force turns them");
-        assert!(
-            most > 0.1 * energy,
-            "{name}: they hardly touch: {most} J of {energy} J"
-        );
+        assert!(most > 0.1 * energy, "{name}: they hardly touch: {most} J of {energy} J");
         let after = momenta(&run);
-        assert!(
-            (after[0] - p).norm() < 1e-12 * p.norm(),
-            "{name}: {p} became {}",
-            after[0]
-        );
-        assert!(
-            (after[1] - l).norm() < of_turn * l.norm(),
-            "{name}: {l} became {}",
-            after[1]
-        );
-        assert!(
-            worst < of_energy,
-            "{name}: the energy changes by a share of {worst}"
-        );
+        assert!((after[0] - p).norm() < 1e-12 * p.norm(), "{name}: {p} became {}", after[0]);
+        assert!((after[1] - l).norm() < of_turn * l.norm(), "{name}: {l} became {}", after[1]);
+        assert!(worst < of_energy, "{name}: the energy changes by a share of {worst}");
     }
 }

@@ -46,10 +46,7 @@ fn each_box_of_a_stack_is_held_against_its_weight() {
     for _ in 0..100 {
         run.take_steps(1).unwrap();
         let felt = run.contact_forces().unwrap();
-        forces
-            .iter_mut()
-            .zip(felt)
-            .for_each(|(f, felt)| *f += felt / 100.0);
+        forces.iter_mut().zip(felt).for_each(|(f, felt)| *f += felt / 100.0);
     }
     let network = run.model().network().unwrap();
     for body in network.bodies() {
@@ -82,10 +79,7 @@ fn impulses_of_the_guard_are_felt_and_balance() {
         let up = &forces[n..2 * n];
         let most = up.iter().map(|f| f.abs()).sum::<f64>();
         let (sum, cut) = (up.iter().sum::<f64>(), run.contact().guarded.lost / step);
-        assert!(
-            sum.abs() <= cut + 1e-9 * most.max(1.0),
-            "{sum} N, cut {cut}"
-        );
+        assert!(sum.abs() <= cut + 1e-9 * most.max(1.0), "{sum} N, cut {cut}");
         largest = largest.max(most);
     }
     assert!(largest > 1.0, "{largest} N");

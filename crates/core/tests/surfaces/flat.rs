@@ -33,10 +33,7 @@ struct Frame {
     unit: f64,
 }
 
-const PLAIN: Frame = Frame {
-    turn: Vector3::new(0.0, 0.0, 0.0),
-    unit: 1.0,
-};
+const PLAIN: Frame = Frame { turn: Vector3::new(0.0, 0.0, 0.0), unit: 1.0 };
 
 impl Frame {
     fn random(random: &mut Random) -> Self {
@@ -98,11 +95,8 @@ fn slab() -> Mesh {
         }
     }
     let mut quad = |a: u32, b: u32, c: u32, d: u32| {
-        let halves = if random.unit() < 0.5 {
-            [[a, b, c], [a, c, d]]
-        } else {
-            [[a, b, d], [b, c, d]]
-        };
+        let halves =
+            if random.unit() < 0.5 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
         mesh.triangles.extend(halves);
     };
     let (at, below) = (|i, j| i * n + j, n * n);
@@ -127,9 +121,7 @@ fn slab() -> Mesh {
 fn build(text: &str) -> Scene {
     let description = Description::parse(text);
     let setup = description.and_then(|d| d.build(None, &mut |_| Ok(slab())));
-    setup
-        .unwrap_or_else(|fault| panic!("{fault}\n{text}"))
-        .scene
+    setup.unwrap_or_else(|fault| panic!("{fault}\n{text}")).scene
 }
 
 /// Body above the ground.
@@ -263,10 +255,7 @@ fn particles_and_balls_glide_straight_on() {
                 let straight = Vector3::from(at) + Vector3::from(v) * 2.0;
                 let [aside, faster] = [x - straight, moved - Vector3::from(v)]
                     .map(|d| Vector3::new(d.x, 0.0, d.z).norm());
-                assert!(
-                    aside < 1e-6 && faster < 1e-6,
-                    "{what}: {aside} m, {faster} m/s"
-                );
+                assert!(aside < 1e-6 && faster < 1e-6, "{what}: {aside} m, {faster} m/s");
             }
         }
     }
@@ -290,10 +279,7 @@ fn the_order_of_rk4_is_kept_over_a_diagonal() {
         particle(&run, 0, PLAIN)[0].y
     };
     let exact = height(64_000);
-    let order = ((height(500) - exact) / (height(2000) - exact))
-        .abs()
-        .log2()
-        / 2.0;
+    let order = ((height(500) - exact) / (height(2000) - exact)).abs().log2() / 2.0;
     assert!((order - 4.0).abs() < 0.1, "{order}");
 }
 
@@ -353,10 +339,8 @@ fn balls_notice_no_seam() {
     };
     for (number, ground) in SEAMS.iter().enumerate() {
         for (name, step) in [("rk4", 1e-3), ("verlet", 2e-3), ("implicit", 4e-3)] {
-            let text = format!(
-                "gravity = [0, -9.81, 0]\n{ground}{}",
-                ball([-0.25, 0.10592, 0.1], 1.0)
-            );
+            let text =
+                format!("gravity = [0, -9.81, 0]\n{ground}{}", ball([-0.25, 0.10592, 0.1], 1.0));
             let mut run = Simulation::new(build(&text), method(name), Control::Step(step)).unwrap();
             run.advance_to(0.2).unwrap();
             let (mut least, mut most) = (f64::INFINITY, 0.0_f64);

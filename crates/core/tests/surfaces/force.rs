@@ -40,10 +40,7 @@ fn each_pair(damping: f64, mut check: impl FnMut(Kind, &Network, &[f64], &mut Ra
                 check(kind, &network, &x, &mut random);
             }
         }
-        assert!(
-            pressed > TRIES / 3,
-            "{kind:?}: {pressed} of {TRIES} pairs touch"
-        );
+        assert!(pressed > TRIES / 3, "{kind:?}: {pressed} of {TRIES} pairs touch");
     }
 }
 
@@ -76,10 +73,7 @@ fn it_sums_to_no_force_and_no_torque() {
         }
         let most = f.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
         assert!(sum.norm() < 1e-14 * most.max(LARGE), "{kind:?}: {sum}");
-        assert!(
-            torque.norm() < 1e-13 * most.max(LARGE),
-            "{kind:?}: {torque}"
-        );
+        assert!(torque.norm() < 1e-13 * most.max(LARGE), "{kind:?}: {torque}");
     });
 }
 

@@ -171,10 +171,8 @@ fn rods_keep_their_lengths_and_do_not_cross() {
              from = {at}\nto = {down}\npin = [{{ at = ['first'] }}]\n"
         )
     };
-    let [first, second] = [
-        chain("[0, 0, 0]", "[1, 0.1, 0]"),
-        chain("[0.35, -0.3, 0.02]", "[0.35, -0.25, 1.02]"),
-    ];
+    let [first, second] =
+        [chain("[0, 0, 0]", "[1, 0.1, 0]"), chain("[0.35, -0.3, 0.02]", "[0.35, -0.25, 1.02]")];
     let text = format!("gravity = [0, -9.81, 0]\nself_collision = true\n{first}{second}");
     let mut run = run(&text, "rk4");
     for _ in 0..60 {
@@ -223,11 +221,7 @@ fn what_crosses_does_not_begin_to_touch() {
     run.grab(LEFT).unwrap();
     for k in 0.. {
         assert!(k < 200, "it crosses nothing");
-        run.pull(Vector3::new(
-            -place.x,
-            0.5,
-            if k % 40 < 20 { 1.0 } else { -1.0 },
-        ));
+        run.pull(Vector3::new(-place.x, 0.5, if k % 40 < 20 { 1.0 } else { -1.0 }));
         run.advance_to(run.time() + 1.0 / 60.0).unwrap();
         if crossings(&run) > 0 {
             break;

@@ -31,13 +31,8 @@ fn deepest() -> f64 {
 /// Reference of the state at `until` (s) alone, in frames of about 5 ms.
 fn at(scene: &Scene, until: f64) -> Reference {
     let (frames, at_end) = (Frames { until, count: 200 }, true);
-    let scope = Scope {
-        at_end,
-        ..Scope::default()
-    };
-    Reference::new(scene, frames, scope, Precision::FINEST, &|| true)
-        .unwrap()
-        .unwrap()
+    let scope = Scope { at_end, ..Scope::default() };
+    Reference::new(scene, frames, scope, Precision::FINEST, &|| true).unwrap().unwrap()
 }
 
 fn assert_close(found: f64, exact: f64, tolerance: f64) {
@@ -56,11 +51,7 @@ fn the_reference_knows_the_impact_of_a_bead() {
     assert!(at_turn.floor.penetration < 1e-9 && at_turn.floor.impact < 1e-9);
     // A bead that starts at its turning point: only the end of its impact follows.
     let leaving = at(&bead(THICKNESS - deepest(), 0.0, 0.0), 1.0);
-    assert_close(
-        leaving.still.impact,
-        1.0 - QUARTER * deepest() / SPEED,
-        1e-7,
-    );
+    assert_close(leaving.still.impact, 1.0 - QUARTER * deepest() / SPEED, 1e-7);
     assert_eq!(at(&bead(5.0, -SPEED, 0.0), 1.0).still.impact, 0.0);
 }
 
@@ -70,13 +61,7 @@ fn the_error_of_the_impact_is_how_late_it_is() {
     let (drop, gravity, h) = (0.3, 9.81, 1e-3);
     let scene = bead(THICKNESS + drop, 0.0, gravity);
     let reference = at(&scene, 0.3);
-    let euler = measure(
-        &scene,
-        method("euler"),
-        Control::Step(h),
-        &reference,
-        &|| true,
-    );
+    let euler = measure(&scene, method("euler"), Control::Step(h), &reference, &|| true);
     let late =
         0.5 * h + (0.25 * h * h + 2.0 * drop / gravity).sqrt() - (2.0 * drop / gravity).sqrt();
     assert_close(euler.unwrap().unwrap().errors.impact, late, 1e-3 * late);
@@ -87,17 +72,9 @@ fn the_error_of_the_impact_is_how_late_it_is() {
 fn errors_of_a_bounce_fall_with_the_order() {
     let scene = bead(0.5, -SPEED, 0.0);
     let reference = |metric| {
-        let precision = Precision {
-            metric,
-            ..Precision::FINEST
-        };
-        let frames = Frames {
-            until: 1.0,
-            count: 60,
-        };
-        Reference::new(&scene, frames, Scope::default(), precision, &|| true)
-            .unwrap()
-            .unwrap()
+        let precision = Precision { metric, ..Precision::FINEST };
+        let frames = Frames { until: 1.0, count: 60 };
+        Reference::new(&scene, frames, Scope::default(), precision, &|| true).unwrap().unwrap()
     };
     for metric in [Metric::Impact, Metric::Penetration] {
         let reference = reference(metric);
@@ -108,16 +85,9 @@ fn errors_of_a_bounce_fall_with_the_order() {
                 metric.of(&run.unwrap().unwrap().errors)
             };
             // Single errors vary with the place in a step where the touch begins.
-            let sum = |first: u32| {
-                (0..8)
-                    .map(|k| of(first + k * first / 16).powi(2))
-                    .sum::<f64>()
-            };
+            let sum = |first: u32| (0..8).map(|k| of(first + k * first / 16).powi(2)).sum::<f64>();
             let found = 0.25 * (sum(120) / sum(480)).log2();
-            assert!(
-                (found - order).abs() < 0.2,
-                "{name}, {metric:?}: order {found}"
-            );
+            assert!((found - order).abs() < 0.2, "{name}, {metric:?}: order {found}");
         }
     }
 }

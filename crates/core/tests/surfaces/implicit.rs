@@ -27,32 +27,16 @@ fn pile(stiffness: f64, damping: f64) -> String {
 
 #[test]
 fn they_run_piles_soft_and_stiff_damped_and_not() {
-    for (stiffness, damping) in [
-        (40.0, 0.1),
-        (4.0, 0.1),
-        (4000.0, 0.1),
-        (40.0, 0.0),
-        (40.0, 1.0),
-    ] {
+    for (stiffness, damping) in [(40.0, 0.1), (4.0, 0.1), (4000.0, 0.1), (40.0, 0.0), (40.0, 1.0)] {
         let scene = described(&pile(stiffness, damping));
-        for (name, value) in [
-            ("implicit", 1.0 / 60.0),
-            ("tr-bdf2", 1.0 / 60.0),
-            ("bdf", 1e-3),
-        ] {
+        for (name, value) in [("implicit", 1.0 / 60.0), ("tr-bdf2", 1.0 / 60.0), ("bdf", 1e-3)] {
             let method = method(name);
             let mut run = Simulation::new(scene.clone(), method, method.control(value)).unwrap();
             let before = run.energy().unwrap().total();
             let ran = run.advance_to(0.6);
-            assert!(
-                ran.is_ok(),
-                "{name}, {stiffness} N/m, damping ratio {damping}: {ran:?}"
-            );
+            assert!(ran.is_ok(), "{name}, {stiffness} N/m, damping ratio {damping}: {ran:?}");
             let after = run.energy().unwrap().total();
-            assert!(
-                after < before,
-                "{name}, {stiffness} N/m: energy from {before} J to {after} J"
-            );
+            assert!(after < before, "{name}, {stiffness} N/m: energy from {before} J to {after} J");
         }
     }
 }

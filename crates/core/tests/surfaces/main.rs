@@ -30,22 +30,11 @@ use a3_core::{Network, Path, Touch, Vector3};
 fn bead_above_floor(mass: f64, gravity: f64, [thickness, stiffness]: [f64; 2]) -> Network {
     let mut network = Network::new(vec![mass]).unwrap();
     network.set_gravity(Vector3::new(0.0, -gravity, 0.0));
-    let floor = Obstacle {
-        thickness,
-        ..Obstacle::smooth(Shape::Floor, Path::Still(Vector3::zeros()))
-    };
+    let floor =
+        Obstacle { thickness, ..Obstacle::smooth(Shape::Floor, Path::Still(Vector3::zeros())) };
     network.add_obstacle(floor).unwrap();
-    let skin = Skin {
-        thickness,
-        stiffness,
-        ..Skin::default()
-    };
-    let touch = Touch {
-        skins: vec![skin],
-        edges: vec![[0, 0]],
-        drops: vec![],
-        bodies: false,
-    };
+    let skin = Skin { thickness, stiffness, ..Skin::default() };
+    let touch = Touch { skins: vec![skin], edges: vec![[0, 0]], drops: vec![], bodies: false };
     network.set_touch(Some(touch)).unwrap();
     network
 }

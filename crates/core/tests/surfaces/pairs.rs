@@ -31,10 +31,7 @@ impl Kind {
 
     /// Whether no obstacle is part of the pair.
     pub fn is_free(self) -> bool {
-        matches!(
-            self,
-            Self::VertexTriangle | Self::EdgeEdge | Self::NearlyParallel
-        )
+        matches!(self, Self::VertexTriangle | Self::EdgeEdge | Self::NearlyParallel)
     }
 
     /// The pair, without any other force.
@@ -59,10 +56,7 @@ impl Kind {
         let shape = match self {
             Self::VertexFloor => Some(Shape::Floor),
             Self::TriangleSphere => Some(Shape::Sphere { radius: 0.3 }),
-            Self::EdgeCapsule => Some(Shape::Capsule {
-                ends: [-half, half],
-                radius: 0.2,
-            }),
+            Self::EdgeCapsule => Some(Shape::Capsule { ends: [-half, half], radius: 0.2 }),
             _ => None,
         };
         if let Some(shape) = shape {
@@ -72,12 +66,8 @@ impl Kind {
             };
             network.add_obstacle(obstacle).unwrap();
         }
-        let touch = Touch {
-            skins: vec![skin; count],
-            edges: edges.to_vec(),
-            drops: vec![],
-            bodies: true,
-        };
+        let touch =
+            Touch { skins: vec![skin; count], edges: edges.to_vec(), drops: vec![], bodies: true };
         network.set_touch(Some(touch)).unwrap();
         network
     }
@@ -94,21 +84,14 @@ impl Kind {
                     Vector3::new(f64::cos(turn), 0.0, f64::sin(turn)) + 0.3 * flat(random)
                 });
                 let [s, t] = [random.unit(), random.unit()];
-                let (s, t) = if s + t > 1.0 {
-                    (1.0 - s, 1.0 - t)
-                } else {
-                    (s, t)
-                };
+                let (s, t) = if s + t > 1.0 { (1.0 - s, 1.0 - t) } else { (s, t) };
                 let [a, b, c] = corners;
                 let at = a + (b - a) * s + (c - a) * t;
                 vec![at + gap, a, b, c]
             }
             Self::EdgeEdge => {
                 let at = 0.3 * flat(random);
-                let (a, b) = (
-                    Vector3::x() + 0.3 * flat(random),
-                    Vector3::z() + 0.3 * flat(random),
-                );
+                let (a, b) = (Vector3::x() + 0.3 * flat(random), Vector3::z() + 0.3 * flat(random));
                 vec![at - a, at + a, at + gap - b, at + gap + b]
             }
             Self::NearlyParallel => {
@@ -137,9 +120,7 @@ impl Kind {
                 vec![above - along, above + along]
             }
         };
-        (0..3)
-            .flat_map(|axis| points.iter().map(move |p| p[axis]).collect::<Vec<_>>())
-            .collect()
+        (0..3).flat_map(|axis| points.iter().map(move |p| p[axis]).collect::<Vec<_>>()).collect()
     }
 }
 
@@ -149,10 +130,8 @@ pub struct Random(pub u64);
 impl Random {
     /// A number from 0 to 1.
     pub fn unit(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 

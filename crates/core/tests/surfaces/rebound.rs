@@ -150,11 +150,7 @@ fn bodies_that_rebound_come_to_rest() {
                 furthest = furthest.max((run.position(0) - at).norm());
             }
             // Steps of Verlet without motion begin and end with a velocity of order 2.
-            let most = if name == "verlet" {
-                150.0 * step * step
-            } else {
-                1e-4
-            };
+            let most = if name == "verlet" { 150.0 * step * step } else { 1e-4 };
             assert!(
                 fastest < most && furthest < 1e-5,
                 "{part} {name} {step}: {fastest} m/s, {furthest} m"
@@ -250,12 +246,9 @@ fn boxes_without_restitution_stay_together() {
 /// A ball that hits a rod near its end: the rod turns away.
 #[test]
 fn a_rod_hit_at_its_end_turns() {
-    for (restitution, arm, step) in [
-        (0.0, 0.45, 1e-3),
-        (0.8, 0.45, 1e-3),
-        (1.0, 0.3, 1e-3),
-        (0.8, 0.45, 1e-4),
-    ] {
+    for (restitution, arm, step) in
+        [(0.0, 0.45, 1e-3), (0.8, 0.45, 1e-3), (1.0, 0.3, 1e-3), (0.8, 0.45, 1e-4)]
+    {
         let (mass, ball, speed) = (2.0, 0.5, 3.0);
         let text = pair(
             &format!("parts = [{{ box = [0.02, 1, 0.02] }}]\nmass = {mass}"),
@@ -274,11 +267,7 @@ fn a_rod_hit_at_its_end_turns() {
         let inertia = mass * (1.0 + 0.02 * 0.02) / 12.0;
         let impulse = (1.0 + restitution) * speed / (1.0 / ball + 1.0 / mass + arm * arm / inertia);
         let [rod, of_ball] = [0, 1].map(|k| moving(&run, k));
-        let exact = [
-            impulse / mass,
-            -arm * impulse / inertia,
-            speed - impulse / ball,
-        ];
+        let exact = [impulse / mass, -arm * impulse / inertia, speed - impulse / ball];
         let found = [rod.v.x, rod.spin.z, of_ball.v.x];
         for (found, exact) in found.iter().zip(exact) {
             assert!((found - exact).abs() < 0.01 * speed, "{found} {exact}");
@@ -329,11 +318,7 @@ fn impacts_conserve_momenta() {
             impulses += run.guarded().impulses;
             let size = scale * p0.norm();
             assert!((p1 - p0).norm() < 1e-12 * p0.norm());
-            assert!(
-                (l1 - l0).norm() < most * size,
-                "{seed} {name}: {:e}",
-                (l1 - l0).norm() / size
-            );
+            assert!((l1 - l0).norm() < most * size, "{seed} {name}: {:e}", (l1 - l0).norm() / size);
             // The contact layer of the smallest bodies is hardly resolved.
             assert!(e1 < e0 * 1.05, "{seed} {name}: {e0} {e1}");
         }
@@ -387,13 +372,8 @@ fn balls_on_hinges_are_a_cradle() {
             -angle.cos(),
         )
     };
-    let text = [
-        format!("gravity = [0, -{G}, 0]\n"),
-        ball(0, -0.6),
-        ball(1, 0.0),
-        ball(2, 0.0),
-    ]
-    .concat();
+    let text =
+        [format!("gravity = [0, -{G}, 0]\n"), ball(0, -0.6), ball(1, 0.0), ball(2, 0.0)].concat();
     for (name, until) in [("rk4", 8.0), ("verlet", 4.0), ("dop853", 4.0)] {
         let m = method(name);
         let mut run = Simulation::new(described(&text), m, m.default_control).unwrap();
@@ -402,10 +382,7 @@ fn balls_on_hinges_are_a_cradle() {
         let begun = energy(&run);
         run.advance_to(0.65).unwrap();
         let speeds = [0, 1, 2].map(|k| moving(&run, k).v.norm());
-        assert!(
-            speeds[0].max(speeds[1]) < 0.02 && speeds[2] > 1.5,
-            "{name}: {speeds:?}"
-        );
+        assert!(speeds[0].max(speeds[1]) < 0.02 && speeds[2] > 1.5, "{name}: {speeds:?}");
         run.advance_to(until).unwrap();
         let gained = energy(&run) / begun - 1.0;
         assert!(gained.abs() < 0.01, "{name}: {gained}");
@@ -436,10 +413,7 @@ fn friction_with_restitution_gains_no_energy() {
             for k in 1..=50 {
                 run.advance_to(0.02 * f64::from(k)).unwrap();
                 let gained = run.energy().unwrap().total() - begun;
-                assert!(
-                    gained < 2e-3 * begun,
-                    "{seed} by {name}: {gained} of {begun} J"
-                );
+                assert!(gained < 2e-3 * begun, "{seed} by {name}: {gained} of {begun} J");
             }
         }
     }

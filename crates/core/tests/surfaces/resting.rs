@@ -30,10 +30,7 @@ fn the_limit_of_a_step_is_that_of_contact_at_rest() {
     for (name, product) in [("verlet", 2.0), ("rk4", 8.0_f64.sqrt())] {
         let limit = largest_step(method(name), &modes).unwrap().unwrap().step;
         let exact = product / frequency;
-        assert!(
-            (limit / exact - 1.0).abs() < 1e-3,
-            "{name}: {limit}, not {exact}"
-        );
+        assert!((limit / exact - 1.0).abs() < 1e-3, "{name}: {limit}, not {exact}");
     }
 }
 
@@ -121,22 +118,12 @@ fn stiffer_contact_lowers_the_limit_of_a_sheet_as_it_should() {
         let rest = at_rest(&scene);
         let network = scene.model.network().unwrap();
         let skin = network.touch().unwrap().skins[0];
-        let lightest = network
-            .masses()
-            .iter()
-            .copied()
-            .fold(f64::INFINITY, f64::min);
+        let lightest = network.masses().iter().copied().fold(f64::INFINITY, f64::min);
         let exact =
             (27.0 * skin.stiffness * (GRAVITY / skin.thickness).powi(2) / lightest).powf(1.0 / 6.0);
         let found = rest.modes[0].frequency();
-        assert!(
-            (found / exact - 1.0).abs() < 1e-3,
-            "{found} 1/s, not {exact}"
-        );
-        largest_step(method("symplectic"), &rest.modes)
-            .unwrap()
-            .unwrap()
-            .step
+        assert!((found / exact - 1.0).abs() < 1e-3, "{found} 1/s, not {exact}");
+        largest_step(method("symplectic"), &rest.modes).unwrap().unwrap().step
     };
     let ratio = limit(64.0) / limit(64.0 * 64.0);
     assert!((ratio - 2.0).abs() < 0.01, "{ratio}");
@@ -152,10 +139,7 @@ fn the_mode_of_contact_has_the_damping_of_the_skin() {
         network.set_touch(Some(touch)).unwrap();
     }
     let damping = at_rest(&scene).modes[0].damping;
-    assert!(
-        (damping / (0.7 * GRAVITY) - 1.0).abs() < 1e-6,
-        "{damping} 1/s"
-    );
+    assert!((damping / (0.7 * GRAVITY) - 1.0).abs() < 1e-6, "{damping} 1/s");
 }
 
 #[test]

@@ -61,10 +61,7 @@ fn a_ball_rolls_down_a_slope() {
     let exact = 5.0 / 7.0 * 9.81 * 0.5;
     for (method, step) in [("rk4", 1e-3), ("verlet", 1e-3), ("implicit", 5e-3)] {
         let found = acceleration(&slope("ball = 0.3", 0.307, 0.5), method, step);
-        assert!(
-            (found / exact - 1.0).abs() < 1e-3,
-            "{method}: {found} {exact}"
-        );
+        assert!((found / exact - 1.0).abs() < 1e-3, "{method}: {found} {exact}");
     }
     // With less friction than rolling requires, it slides.
     let mu = 0.1;
@@ -237,10 +234,7 @@ fn bodies_that_collide_keep_their_momenta() {
 
 #[test]
 fn a_ball_and_a_box_rest_on_a_cloth() {
-    let setup = a3_scenes::find("ball-on-cloth")
-        .unwrap()
-        .build(None)
-        .unwrap();
+    let setup = a3_scenes::find("ball-on-cloth").unwrap().build(None).unwrap();
     let control = setup.defaults.control.unwrap();
     let mut run = Simulation::new(setup.scene, setup.defaults.solver.unwrap(), control).unwrap();
     let mut lowest = f64::INFINITY;
@@ -289,12 +283,7 @@ fn on_elastic(obstacle: &str, gap: f64) -> String {
 #[test]
 fn a_box_that_begins_close_to_an_elastic_one_stays_above() {
     let obstacle = "[[box]]\ncenter = [0, -0.5, 0]\nsize = [4, 1, 4]";
-    let methods = [
-        ("verlet", 5e-3),
-        ("verlet", 1e-3),
-        ("rk4", 5e-3),
-        ("implicit", 1e-2),
-    ];
+    let methods = [("verlet", 5e-3), ("verlet", 1e-3), ("rk4", 5e-3), ("implicit", 1e-2)];
     for gap in [1e-9, 1e-8, 1e-7, 1e-6, 1e-5] {
         for (method, step) in methods {
             let mut run = run(&on_elastic(obstacle, gap), method, Control::Step(step));
@@ -323,10 +312,7 @@ fn a_box_that_touches_a_floor_is_repelled() {
             run.advance_to(0.5).unwrap();
             center(&run, 0)[0].y
         });
-        assert!(
-            (touching - near).abs() < 1e-6,
-            "{method}: {touching} {near}"
-        );
+        assert!((touching - near).abs() < 1e-6, "{method}: {touching} {near}");
     }
 }
 

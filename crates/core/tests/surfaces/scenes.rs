@@ -13,12 +13,7 @@ use crate::common::method;
 /// Names of scenes in docs/scenes with their texts, what is replaced in these, and the length of
 /// their runs (s).
 const SCENES: [(&str, &str, &[[&str; 2]], f64); 8] = [
-    (
-        "pile",
-        include_str!("../../../../docs/scenes/pile.toml"),
-        &[["[14, 14]", "[6, 6]"]],
-        0.35,
-    ),
+    ("pile", include_str!("../../../../docs/scenes/pile.toml"), &[["[14, 14]", "[6, 6]"]], 0.35),
     (
         "twist",
         include_str!("../../../../docs/scenes/twist.toml"),
@@ -37,12 +32,7 @@ const SCENES: [(&str, &str, &[[&str; 2]], f64); 8] = [
         &[["[20, 20]", "[8, 8]"], ["rate = 1.2", "rate = 6"]],
         0.8,
     ),
-    (
-        "knot",
-        include_str!("../../../../docs/scenes/knot.toml"),
-        &[["end = 3", "end = 0.6"]],
-        0.1,
-    ),
+    ("knot", include_str!("../../../../docs/scenes/knot.toml"), &[["end = 3", "end = 0.6"]], 0.1),
     (
         "funnel",
         include_str!("../../../../docs/scenes/funnel.toml"),
@@ -53,12 +43,7 @@ const SCENES: [(&str, &str, &[[&str; 2]], f64); 8] = [
         ],
         0.4,
     ),
-    (
-        "stack",
-        include_str!("../../../../docs/scenes/stack.toml"),
-        &[["[13, 13]", "[5, 5]"]],
-        0.2,
-    ),
+    ("stack", include_str!("../../../../docs/scenes/stack.toml"), &[["[13, 13]", "[5, 5]"]], 0.2),
     (
         "turning",
         include_str!("../../../../docs/scenes/turning.toml"),
@@ -107,10 +92,7 @@ fn build(text: &str) -> Scene {
 fn undamped(text: &str) -> String {
     let lines = text.lines();
     let damps = |line: &&str| line.starts_with("damping_ratio");
-    lines
-        .filter(|line| !damps(line))
-        .flat_map(|line| [line, "\n"])
-        .collect()
+    lines.filter(|line| !damps(line)).flat_map(|line| [line, "\n"]).collect()
 }
 
 /// Two steps (s) or tolerances of a method on a scene.
@@ -209,9 +191,7 @@ fn nothing_crosses_in_any_documented_scene_by_any_method() {
     let count = thread::available_parallelism().map_or(1, usize::from);
     let found: Vec<_> = thread::scope(|scope| {
         let workers: Vec<_> = (0..count).map(|_| scope.spawn(work)).collect();
-        let all = workers
-            .into_iter()
-            .flat_map(|worker| worker.join().unwrap());
+        let all = workers.into_iter().flat_map(|worker| worker.join().unwrap());
         all.collect()
     });
     for (scene, ..) in SCENES {
@@ -220,20 +200,14 @@ fn nothing_crosses_in_any_documented_scene_by_any_method() {
         assert!(found.iter().any(touches), "nothing touched in {scene}");
     }
     let lost = found.iter().filter(|(_, [_, lost])| *lost).count();
-    assert!(
-        10 * lost < runs.len(),
-        "{lost} of {} runs were lost",
-        runs.len()
-    );
+    assert!(10 * lost < runs.len(), "{lost} of {} runs were lost", runs.len());
 }
 
 /// A cloth large enough that threads share its rows and its pairs, on a ball and on itself.
 #[test]
 fn the_number_of_threads_changes_no_bit() {
     let (_, ball, ..) = SCENES[2];
-    let text = ball
-        .replace("[24, 24]", "[80, 80]")
-        .replace("0.78,", "0.7005,");
+    let text = ball.replace("[24, 24]", "[80, 80]").replace("0.78,", "0.7005,");
     let scene = build(&text);
     let method = method("implicit");
     let states = [1, 2, 3].map(|threads| {

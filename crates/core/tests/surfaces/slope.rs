@@ -73,10 +73,7 @@ fn a_sheet_sticks_or_slides_by_its_friction() {
         let [moved, _] = slides(0.6, tangent, method, step, [20.0, 30.0]);
         assert!(moved < 1e-12, "{method} moved {moved:.1e} m");
         let [_, rate] = slides(0.3, tangent, method, step, [6.0, 8.0]);
-        assert!(
-            (rate / 2.356_287 - 1.0).abs() < 1e-3,
-            "{method} slides at {rate} m/s2"
-        );
+        assert!((rate / 2.356_287 - 1.0).abs() < 1e-3, "{method} slides at {rate} m/s2");
     }
 }
 
@@ -84,8 +81,5 @@ fn a_sheet_sticks_or_slides_by_its_friction() {
 fn the_tangent_of_the_slope_decides() {
     let [held, _] = slides(0.51, 0.5, "v", 0.002, [20.0, 21.0]);
     let [slid, _] = slides(0.49, 0.5, "v", 0.002, [20.0, 21.0]);
-    assert!(
-        held < 1e-12 && slid > 0.01,
-        "held {held:.1e} m, slid {slid:.1e} m"
-    );
+    assert!(held < 1e-12 && slid > 0.01, "held {held:.1e} m, slid {slid:.1e} m");
 }

@@ -66,11 +66,7 @@ impl Flight {
             ",
             text(velocity)
         );
-        Self {
-            toml,
-            velocity,
-            gravity,
-        }
+        Self { toml, velocity, gravity }
     }
 
     fn center(&self, t: f64) -> Vector3<f64> {
@@ -103,10 +99,7 @@ fn obstacle(flight: &Flight, random: &mut Chance) -> String {
         }
         2 => {
             let end = random.between(time + 0.02, 0.8);
-            (
-                meets - speed * time,
-                format!("shift = {{ by = {}, end = {end} }}", text(speed * end)),
-            )
+            (meets - speed * time, format!("shift = {{ by = {}, end = {end} }}", text(speed * end)))
         }
         // It is still, or rotates.
         _ => (meets, String::new()),
@@ -170,16 +163,10 @@ fn nothing_passes_through_a_cloth_within_a_step() {
         for (name, control) in adaptive.into_iter().chain(fixed) {
             let found = thrown(&toml, &flight, method(name), control);
             if found.is_some_and(|found| found < 0.1 * fine) {
-                missed.push(format!(
-                    "{name} at {control}: {found:?} m instead of {fine}\n{toml}"
-                ));
+                missed.push(format!("{name} at {control}: {found:?} m instead of {fine}\n{toml}"));
             }
         }
     }
     println!("{tries} tried, {met} met, {} missed", missed.len());
-    assert!(
-        3 * met > tries && missed.is_empty(),
-        "{}",
-        missed.join("\n")
-    );
+    assert!(3 * met > tries && missed.is_empty(), "{}", missed.join("\n"));
 }

@@ -16,17 +16,11 @@ fn scene(text: &str) -> Scene {
     };
     let octahedron = Mesh {
         positions: (0..6).map(corner).collect(),
-        triangles: faces
-            .iter()
-            .flat_map(|&[a, b, c]| [[a, b, c], [b, a, 5]])
-            .collect(),
+        triangles: faces.iter().flat_map(|&[a, b, c]| [[a, b, c], [b, a, 5]]).collect(),
         ..Mesh::default()
     };
     let description = Description::parse(&format!("self_collision = true\n{text}")).unwrap();
-    description
-        .build(None, &mut |_| Ok(octahedron.clone()))
-        .unwrap()
-        .scene
+    description.build(None, &mut |_| Ok(octahedron.clone())).unwrap().scene
 }
 
 fn network(scene: &Scene) -> &Network {
@@ -36,9 +30,7 @@ fn network(scene: &Scene) -> &Network {
 /// Counts crossings of the triangles of the particles alone, by their edges.
 fn count_crossings(network: &Network, y: &[f64]) -> usize {
     let triangles = network.triangles();
-    let sides = triangles
-        .iter()
-        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let edges: Vec<_> = sides.filter(|[a, b]| a < b).collect();
     crossings(&y[..3 * network.particles()], &[], triangles, &edges).len()
 }
@@ -52,11 +44,7 @@ fn parted(scene: &Scene) -> f64 {
     untangle(network, &mut apart.state).unwrap_or_else(|why| panic!("{why}"));
     assert_eq!(count_crossings(network, &apart.state), 0);
     network.check_apart(0.0, &apart.state[..3 * n]).unwrap();
-    assert_eq!(
-        apart.state[3 * n..],
-        scene.state[3 * n..],
-        "velocities stay"
-    );
+    assert_eq!(apart.state[3 * n..], scene.state[3 * n..], "velocities stay");
     let moved = |i: usize| {
         let by = |axis: usize| apart.state[axis * n + i] - scene.state[axis * n + i];
         by(0).hypot(by(1)).hypot(by(2))
@@ -66,9 +54,7 @@ fn parted(scene: &Scene) -> f64 {
     }
     let mut run = Simulation::new(apart.clone(), method("verlet"), Control::Step(1e-3)).unwrap();
     run.advance_to(0.02).unwrap();
-    network
-        .check_apart(run.time(), &run.state()[..3 * n])
-        .unwrap();
+    network.check_apart(run.time(), &run.state()[..3 * n]).unwrap();
     (0..n).map(moved).fold(0.0, f64::max)
 }
 
@@ -112,10 +98,7 @@ fn bodies_of_all_kinds_come_apart() {
                at = [0.1, 0.02, 0.5]\nrotation = [0, 0, 0.4]\n";
     let body = |keys: &str| format!("[[body]]\nmass = 1\n{keys}\n");
     for (text, most) in [
-        (
-            sheet(LEVEL) + &jelly("at = [0.1, 0.1, 0.5]\nrotation = [0.2, 0.3, 0.1]"),
-            0.4,
-        ),
+        (sheet(LEVEL) + &jelly("at = [0.1, 0.1, 0.5]\nrotation = [0.2, 0.3, 0.1]"), 0.4),
         (
             jelly("at = [0, 0, 0]") + &jelly("at = [0.3, 0.3, 0.28]\nrotation = [0.3, 0.2, 0.4]"),
             0.4,
@@ -127,18 +110,9 @@ fn bodies_of_all_kinds_come_apart() {
                 + "[[box]]\ncenter = [0.1, -0.1, 0.7]\nsize = [0.3, 0.25, 0.3]\n",
             0.3,
         ),
-        (
-            sheet(LEVEL) + "[[sphere]]\ncenter = [0.05, -0.1, 0.5]\nradius = 0.25\n",
-            0.4,
-        ),
-        (
-            sheet("at = [0, 0.3, 0]") + "[[box]]\ncenter = [0, -1, 0]\nsize = [3, 0.5, 3]\n",
-            0.1,
-        ),
-        (
-            "floor = 0\n".to_owned() + &sheet("at = [0, 0.3, 0]\nthickness = 0.01"),
-            2.5,
-        ),
+        (sheet(LEVEL) + "[[sphere]]\ncenter = [0.05, -0.1, 0.5]\nradius = 0.25\n", 0.4),
+        (sheet("at = [0, 0.3, 0]") + "[[box]]\ncenter = [0, -1, 0]\nsize = [3, 0.5, 3]\n", 0.1),
+        ("floor = 0\n".to_owned() + &sheet("at = [0, 0.3, 0]\nthickness = 0.01"), 2.5),
         (
             body("parts = [{ box = [0.4, 0.3, 0.3] }]\nat = [0, 0, 0]")
                 + &body(
@@ -146,10 +120,7 @@ fn bodies_of_all_kinds_come_apart() {
                 ),
             0.4,
         ),
-        (
-            sheet(LEVEL) + &body("parts = [{ ball = 0.2 }]\nat = [0, 0.05, 0.4]"),
-            0.6,
-        ),
+        (sheet(LEVEL) + &body("parts = [{ ball = 0.2 }]\nat = [0, 0.05, 0.4]"), 0.6),
         (
             sheet(LEVEL)
                 + "[[chain]]\nparticles = 8\nfrom = [0.02, -0.2, 0.5]\nto = [0.1, 0.5, 0.6]\nmass = 0.01\nstiffness = 50\n",
@@ -189,10 +160,7 @@ fn a_rigid_body_moves_without_turning_or_bending() {
 fn random_heaps_of_sheets_and_jellies_come_apart() {
     let mut crossed = 0;
     for seed in 0..12 {
-        let numbers: Vec<_> = state_random(18, 1 + 7919 * seed)
-            .iter()
-            .map(|x| 0.5 * x)
-            .collect();
+        let numbers: Vec<_> = state_random(18, 1 + 7919 * seed).iter().map(|x| 0.5 * x).collect();
         let body = |k: usize| {
             let [x, y, z] = [0, 1, 2].map(|axis| 0.6 * numbers[3 * k + axis]);
             let [a, b, c] = [0, 1, 2].map(|axis| 3.0 * numbers[9 + 3 * k + axis]);
@@ -203,9 +171,7 @@ fn random_heaps_of_sheets_and_jellies_come_apart() {
                 )
             } else {
                 let [d, e, f] = [b * z - c * y, c * x - a * z, a * y - b * x];
-                sheet(&format!(
-                    "{at}\ndown = [{a}, {b}, {c}]\nright = [{d}, {e}, {f}]"
-                ))
+                sheet(&format!("{at}\ndown = [{a}, {b}, {c}]\nright = [{d}, {e}, {f}]"))
             }
         };
         let text: String = (0..3).map(body).collect();
@@ -228,9 +194,6 @@ fn what_cannot_come_apart_is_named() {
     let scene = scene(&text);
     let mut y = scene.state.clone();
     let why = untangle(network(&scene), &mut y).unwrap_err().to_string();
-    assert!(
-        why.contains("do not come apart") && why.contains("part 1 (81 particles"),
-        "{why}"
-    );
+    assert!(why.contains("do not come apart") && why.contains("part 1 (81 particles"), "{why}");
     assert_eq!(y, scene.state);
 }

@@ -48,9 +48,7 @@ static PAGES: [&str; LESSONS as usize + 1] = carried![
 /// The lessons in their order, read from their pages.
 pub static ALL: LazyLock<Vec<Lesson>> = LazyLock::new(|| {
     let pages = PAGES[1..].iter().enumerate();
-    pages
-        .map(|(k, page)| Lesson::read(page, PAGES[0], k + 1))
-        .collect()
+    pages.map(|(k, page)| Lesson::read(page, PAGES[0], k + 1)).collect()
 });
 
 /// Prints a lesson, or the index, as text. An answer comes at once if `answers`, and else, in a
@@ -146,11 +144,7 @@ impl Lesson {
         Self {
             title: title.into(),
             about: about.map_or("", |(_, about)| about).into(),
-            steps: steps
-                .split("\n### ")
-                .skip(1)
-                .filter_map(Step::read)
-                .collect(),
+            steps: steps.split("\n### ").skip(1).filter_map(Step::read).collect(),
         }
     }
 }
@@ -211,18 +205,11 @@ impl Question {
                 right: choices.iter().position(|choice| choice == right)?,
                 choices: choices
                     .into_iter()
-                    .map(|words| Choice {
-                        reply: reply(&words),
-                        words,
-                    })
+                    .map(|words| Choice { reply: reply(&words), words })
                     .collect(),
             }
         };
-        Some(Self {
-            words,
-            answer,
-            why: why.into(),
-        })
+        Some(Self { words, answer, why: why.into() })
     }
 }
 
@@ -231,9 +218,7 @@ fn scene_in<'a>(page: &'a str, name: &str) -> Option<&'a str> {
     let blocks = page.split("```").skip(1).step_by(2);
     let scenes = blocks.filter_map(|block| block.strip_prefix("toml\n"));
     let mut named = scenes.filter(|scene| {
-        let first = scene
-            .strip_prefix("# ")
-            .and_then(|it| it.strip_prefix(name));
+        let first = scene.strip_prefix("# ").and_then(|it| it.strip_prefix(name));
         first.is_some_and(|rest| rest.starts_with(':'))
     });
     named.next()

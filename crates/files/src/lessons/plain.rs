@@ -152,11 +152,8 @@ mod tests {
         let text = "1. Title\n--------\n\nSome bold words and a * b, a link and more.\n\n    a3 *t*\n\n\
             Picture: A curve\n\na  b\n1  two\n\nQuestion. Why?\n";
         let window = "In the window\n-------------\n\nKey F1.\n";
-        let expected = [
-            Piece::Text(text.into()),
-            Piece::Answer("- So.\n".into()),
-            Piece::Text(window.into()),
-        ];
+        let expected =
+            [Piece::Text(text.into()), Piece::Answer("- So.\n".into()), Piece::Text(window.into())];
         assert_eq!(pieces(page), expected);
     }
 
@@ -166,9 +163,8 @@ mod tests {
         for page in super::super::PAGES {
             for Piece::Text(text) | Piece::Answer(text) in pieces(page) {
                 for line in text.lines().filter(|line| !line.starts_with("    ")) {
-                    let is_marked = ["`", "**", "](", "</", "|", "#"]
-                        .iter()
-                        .any(|mark| line.contains(mark));
+                    let is_marked =
+                        ["`", "**", "](", "</", "|", "#"].iter().any(|mark| line.contains(mark));
                     assert!(!is_marked && line.chars().count() <= WIDTH, "{line}");
                 }
             }

@@ -17,10 +17,7 @@ pub struct RunBar {
 impl RunBar {
     /// Creates the bar of a run that begins now.
     pub fn begin() -> Self {
-        Self {
-            begun: Instant::now(),
-            bar: None,
-        }
+        Self { begun: Instant::now(), bar: None }
     }
 
     /// Shows the share of the run that is done.

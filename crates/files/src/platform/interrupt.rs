@@ -126,11 +126,7 @@ fn end() -> ! {
 
 /// Returns the message of a program that ends after these cleanups.
 fn last_words(cleanups: &[Cleanup]) -> &'static str {
-    if cleanups.is_empty() {
-        "interrupted"
-    } else {
-        "interrupted: no unfinished file was kept"
-    }
+    if cleanups.is_empty() { "interrupted" } else { "interrupted: no unfinished file was kept" }
 }
 
 /// A temporary file or child process that must not outlive the program.

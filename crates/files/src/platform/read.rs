@@ -27,9 +27,7 @@ pub fn read(path: &Path, max_size: u64) -> Result<Vec<u8>, String> {
     let mut bytes = vec![];
     let file = File::open(path).map_err(|e| unreadable(&e))?;
     output::is_read(path);
-    file.take(max_size + 1)
-        .read_to_end(&mut bytes)
-        .map_err(|e| unreadable(&e))?;
+    file.take(max_size + 1).read_to_end(&mut bytes).map_err(|e| unreadable(&e))?;
     if bytes.len() as u64 > max_size {
         return Err(too_long());
     }

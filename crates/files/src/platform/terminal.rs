@@ -21,11 +21,7 @@ pub fn say(text: &str) -> Result<(), Failure> {
 
 /// Writes data to standard output: unchanged, unless it is a terminal.
 pub fn send(data: &str) -> Result<(), Failure> {
-    if io::stdout().is_terminal() {
-        say(data)
-    } else {
-        print(data)
-    }
+    if io::stdout().is_terminal() { say(data) } else { print(data) }
 }
 
 fn print(text: &str) -> Result<(), Failure> {
@@ -41,10 +37,9 @@ fn print(text: &str) -> Result<(), Failure> {
 /// pipe early, as `head` does.
 pub fn check_write(written: io::Result<()>) -> Result<(), Failure> {
     match written {
-        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Failure::run(format!(
-            "standard output could not be written: {}",
-            reason(&e)
-        ))),
+        Err(e) if e.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::run(format!("standard output could not be written: {}", reason(&e))))
+        }
         _ => Ok(()),
     }
 }
@@ -68,10 +63,7 @@ pub fn note(message: &str) {
 /// Returns a message as one line of limited length, in which every character is visible.
 fn one_line(message: &str) -> String {
     let shown = visible(message);
-    let words: Vec<_> = shown
-        .split(' ')
-        .map(|word| shortened(word, MAX_WORD_CHARS))
-        .collect();
+    let words: Vec<_> = shown.split(' ').map(|word| shortened(word, MAX_WORD_CHARS)).collect();
     shortened(&words.join(" "), MAX_MESSAGE_CHARS)
 }
 
@@ -128,10 +120,7 @@ mod tests {
             ("a\u{1b}[2J\u{7}b", "a\\u{1b}[2J\\u{7}b"),
             ("\r\u{7f}\u{9b}31m\0", "\\r\\u{7f}\\u{9b}31m\\0"),
             ("\u{202e}gpj\u{feff}", "\\u{202e}gpj\\u{feff}"),
-            (
-                "Tuch \"è\" 'e\u{301}' \\ 布 µ ×",
-                "Tuch \"è\" 'e\u{301}' \\ 布 µ ×",
-            ),
+            ("Tuch \"è\" 'e\u{301}' \\ 布 µ ×", "Tuch \"è\" 'e\u{301}' \\ 布 µ ×"),
             ("a\tb\nc\n", "a\tb\nc\n"),
         ] {
             assert_eq!(printable(text), shown);

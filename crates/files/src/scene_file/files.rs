@@ -45,17 +45,9 @@ pub fn read_input() -> Result<String, String> {
 fn text_of(bytes: &[u8]) -> Result<String, String> {
     let text = str::from_utf8(unmarked(bytes)?)
         .map_err(|e| format!("it is not UTF-8 text: see byte {}", e.valid_up_to()))?;
-    let text = if text.contains('\n') {
-        text.to_owned()
-    } else {
-        text.replace('\r', "\n")
-    };
+    let text = if text.contains('\n') { text.to_owned() } else { text.replace('\r', "\n") };
     match text.lines().position(|line| line.len() > MAX_LINE) {
-        Some(k) => Err(format!(
-            "line {} is longer than {} MiB",
-            k + 1,
-            MAX_LINE >> 20
-        )),
+        Some(k) => Err(format!("line {} is longer than {} MiB", k + 1, MAX_LINE >> 20)),
         None => Ok(text),
     }
 }
@@ -69,16 +61,12 @@ pub fn beside(scene: Option<&Path>, name: &str) -> Result<PathBuf, String> {
         .components()
         .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
     if !below || name.is_empty() {
-        return Err(format!(
-            "`{name}` must be in the scene's folder or below it, without `..`"
-        ));
+        return Err(format!("`{name}` must be in the scene's folder or below it, without `..`"));
     }
     let folder = scene.and_then(Path::parent).unwrap_or(Path::new(""));
     let path = folder.join(name);
-    if let (Ok(end), Ok(folder)) = (
-        path.canonicalize(),
-        Path::new(".").join(folder).canonicalize(),
-    ) && !end.starts_with(folder)
+    if let (Ok(end), Ok(folder)) = (path.canonicalize(), Path::new(".").join(folder).canonicalize())
+        && !end.starts_with(folder)
     {
         return Err(format!(
             "`{name}` leads out of the scene's folder by a link: put the file itself there"
@@ -122,10 +110,7 @@ pub struct MeshReader {
 impl MeshReader {
     /// Creates a reader for a scene that is built a number of times.
     pub fn new(times: u64) -> Self {
-        Self {
-            left: MAX_MESHES * times,
-            hash: Hash::default(),
-        }
+        Self { left: MAX_MESHES * times, hash: Hash::default() }
     }
 
     /// Reads the bytes of a file.
@@ -133,10 +118,7 @@ impl MeshReader {
         let bytes = read(path, MAX_MESHES)?;
         let left = self.left.checked_sub(bytes.len() as u64);
         self.left = left.ok_or_else(|| {
-            format!(
-                "the meshes of the scene are larger than {} MiB together",
-                MAX_MESHES >> 20
-            )
+            format!("the meshes of the scene are larger than {} MiB together", MAX_MESHES >> 20)
         })?;
         self.hash.add(bytes.iter().copied());
         Ok(bytes)

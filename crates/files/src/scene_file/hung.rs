@@ -207,9 +207,7 @@ pub fn hang(mesh: &Mesh) -> Hanging {
         is_top &= !is_level;
         // A level part swings down from its edge.
         let height = mesh.positions[own[0]][1];
-        let width = [0, 2]
-            .map(|axis| part.extent(mesh, axis))
-            .map(|[a, b]| b - a);
+        let width = [0, 2].map(|axis| part.extent(mesh, axis)).map(|[a, b]| b - a);
         if is_level {
             fall = fall.max(width[0].hypot(width[1]) - (height - lowest));
         }
@@ -231,24 +229,17 @@ impl Part {
     /// Returns the smallest and the largest coordinate along an axis.
     fn extent(&self, mesh: &Mesh, axis: usize) -> [f64; 2] {
         let along = self.0.iter().map(|i| mesh.positions[*i][axis]);
-        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(x), high.max(x)]
-        })
+        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
     }
 
     /// Returns the points by which the part hangs, and whether it is level: a level part hangs by
     /// an edge, any other by its highest points.
     fn held(&self, mesh: &Mesh) -> (Vec<usize>, bool) {
-        let size = [0, 1, 2]
-            .map(|axis| self.extent(mesh, axis))
-            .map(|[low, high]| high - low);
+        let size = [0, 1, 2].map(|axis| self.extent(mesh, axis)).map(|[low, high]| high - low);
         let longest = size.into_iter().fold(0.0, f64::max);
         let end = |axis: usize, is_high: bool| {
             let [low, high] = self.extent(mesh, axis);
-            let (at, near) = (
-                [low, high][usize::from(is_high)],
-                PIN_DISTANCE * (high - low),
-            );
+            let (at, near) = ([low, high][usize::from(is_high)], PIN_DISTANCE * (high - low));
             let is_there = |i: &&usize| (mesh.positions[**i][axis] - at).abs() <= near;
             let there = self.0.iter().filter(is_there);
             there.copied().collect::<Vec<_>>()
@@ -270,10 +261,7 @@ impl Part {
 
 /// Returns the edges of all triangles and tetrahedra; shared ones occur more than once.
 fn edges(mesh: &Mesh) -> impl Iterator<Item = [u32; 2]> {
-    let triangles = mesh
-        .triangles
-        .iter()
-        .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let triangles = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let tetrahedra = mesh.tetrahedra.iter();
     let inner =
         tetrahedra.flat_map(|&[a, b, c, d]| [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]]);
@@ -314,11 +302,7 @@ fn necks(mesh: &Mesh, parts: &[Part], is_pinned: &[bool]) -> Vec<Neck> {
         part.0.iter().for_each(|i| part_of[*i] = k);
     }
     let at = |i: u32| Vector3::from(mesh.positions[i as usize]);
-    let neck = |_| Neck {
-        size: 0.0,
-        edges: 0.0,
-        length: 0.0,
-    };
+    let neck = |_| Neck { size: 0.0, edges: 0.0, length: 0.0 };
     let mut necks: Vec<_> = parts.iter().map(neck).collect();
     for &[a, b, c, d] in &mesh.tetrahedra {
         let [u, v, w] = [b, c, d].map(|i| at(i) - at(a));
@@ -375,10 +359,7 @@ mod tests {
         }
         text += "$EndNodes\n$Elements\n6\n";
         // Six tetrahedra around the diagonal.
-        for (k, [a, b]) in [[2, 4], [4, 3], [3, 7], [7, 5], [5, 6], [6, 2]]
-            .iter()
-            .enumerate()
-        {
+        for (k, [a, b]) in [[2, 4], [4, 3], [3, 7], [7, 5], [5, 6], [6, 2]].iter().enumerate() {
             writeln!(text, "{} 4 2 1 1 1 {a} {b} 8", k + 1).unwrap();
         }
         text += "$EndElements\n";
@@ -400,12 +381,7 @@ mod tests {
                 assert!(held == (run.position(i).y > 0.98), "{}", run.position(i));
             }
             assert!(run.energy().unwrap().kinetic < 1e-2);
-            assert!(
-                integrators::find("v")
-                    .unwrap()
-                    .check(run.model().system())
-                    .is_ok()
-            );
+            assert!(integrators::find("v").unwrap().check(run.model().system()).is_ok());
         }
     }
 

@@ -54,10 +54,7 @@ impl Source {
         let path = Path::new(typed);
         let extension = path.extension().and_then(|e| e.to_str());
         let extension = extension.map(str::to_lowercase);
-        let wrong = |file: &str, why: String| InputError::File {
-            file: file.into(),
-            why,
-        };
+        let wrong = |file: &str, why: String| InputError::File { file: file.into(), why };
         let read = || read_text(path).map_err(|why| wrong(typed, why));
         let mut is_written = true;
         let (text, json) = match extension.as_deref() {
@@ -79,25 +76,15 @@ impl Source {
             }
             _ => return Err(InputError::Unknown(unknown(typed))),
         };
-        let parsed = if json {
-            parse_json(&text)
-        } else {
-            parse_toml(&text)
-        };
-        let (mut description, places) = parsed.map_err(|fault| InputError::Text {
-            file: Some(said(typed)),
-            fault,
-        })?;
+        let parsed = if json { parse_json(&text) } else { parse_toml(&text) };
+        let (mut description, places) =
+            parsed.map_err(|fault| InputError::Text { file: Some(said(typed)), fault })?;
         if description.name.is_none() {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
             let is_input = typed == INPUT;
             description.name = Some(if is_input { "input" } else { &*stem }.into());
         }
-        let places = if is_written {
-            places
-        } else {
-            places.without_lines()
-        };
+        let places = if is_written { places } else { places.without_lines() };
         Ok(Self {
             typed: typed.into(),
             path: Some(path.into()),
@@ -211,11 +198,7 @@ impl Source {
 
     /// Returns the scene with another description. The text stays as it is.
     pub fn described(&self, description: Description) -> Self {
-        Self {
-            description: Arc::new(description),
-            meshes: Arc::default(),
-            ..self.clone()
-        }
+        Self { description: Arc::new(description), meshes: Arc::default(), ..self.clone() }
     }
 
     /// Returns whether the scene has a name, or is in a file.
@@ -281,10 +264,7 @@ fn said(typed: &str) -> String {
 
 /// Returns a fault without its line.
 fn unplaced(fault: Fault) -> Fault {
-    Fault {
-        line: None,
-        ..fault
-    }
+    Fault { line: None, ..fault }
 }
 
 /// Returns the fault of a text that is in no file.

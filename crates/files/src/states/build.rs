@@ -15,10 +15,7 @@ pub struct Digits {
 impl Digits {
     /// Digits of binary numbers that are rounded by at most this share of them.
     pub fn binary(share: f64) -> Self {
-        Self {
-            share,
-            ..Self::default()
-        }
+        Self { share, ..Self::default() }
     }
 
     /// Takes account of a number as it is written.
@@ -50,11 +47,7 @@ impl Digits {
         let Some(decimals) = self.decimals else {
             return self.share * largest;
         };
-        let first = if largest > 0.0 {
-            largest.log10().floor() as i32
-        } else {
-            0
-        };
+        let first = if largest > 0.0 { largest.log10().floor() as i32 } else { 0 };
         let unit = (-decimals).max(first + 1 - self.significant.max(1));
         0.5 * 10f64.powi(unit)
     }
@@ -146,17 +139,14 @@ fn check_counts(
 /// Checks that times are finite, not below 0, and increasing.
 fn check_times(times: &[f64]) -> Result<(), String> {
     if let Some(wrong) = times.iter().find(|t| !(t.is_finite() && **t >= 0.0)) {
-        return Err(format!(
-            "a time must be a number of seconds from 0, not {wrong}"
-        ));
+        return Err(format!("a time must be a number of seconds from 0, not {wrong}"));
     }
     let pairs = times.windows(2);
     let wrong = pairs.into_iter().find(|pair| pair[1] <= pair[0]);
     match wrong {
-        Some(pair) => Err(format!(
-            "its times must increase: after {} s comes {} s",
-            pair[0], pair[1]
-        )),
+        Some(pair) => {
+            Err(format!("its times must increase: after {} s comes {} s", pair[0], pair[1]))
+        }
         None => Ok(()),
     }
 }
@@ -178,10 +168,7 @@ mod tests {
             let mut digits = Digits::default();
             digits.add_all(text);
             let found = digits.rounding(largest);
-            assert!(
-                (found - rounding).abs() <= 1e-9 * rounding,
-                "{text}: {found}"
-            );
+            assert!((found - rounding).abs() <= 1e-9 * rounding, "{text}: {found}");
         }
         assert_eq!(Digits::binary(0.25).rounding(2.0), 0.5);
     }

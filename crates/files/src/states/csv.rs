@@ -15,10 +15,7 @@ const SEPARATORS: [char; 3] = [',', ';', '\t'];
 /// # Errors
 /// The first line has no names that are understood, or a row does not fit: with its line.
 pub fn read(text: &str, particles: usize) -> Result<States, String> {
-    let lines = text
-        .lines()
-        .enumerate()
-        .map(|(k, line)| (k + 1, line.trim()));
+    let lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
     let mut lines = lines.filter(|(_, line)| !line.is_empty());
     let (_, head) = lines.next().ok_or("it is empty")?;
     // NumPy's savetxt begins the line of names with #.
@@ -39,10 +36,7 @@ pub fn read(text: &str, particles: usize) -> Result<States, String> {
                 columns.len()
             )));
         }
-        let row = Row {
-            columns: &columns,
-            cells: &cells,
-        };
+        let row = Row { columns: &columns, cells: &cells };
         let time = row.number(Column::Time).map_err(wrong)?;
         raw.digits[0].add(row.cell(Column::Time).unwrap_or_default());
         let is_new = raw.times.last().is_none_or(|last| *last != time);
@@ -65,12 +59,7 @@ pub fn read(text: &str, particles: usize) -> Result<States, String> {
             Some(layout.particle(&row, &raw, &mut seen).map_err(wrong)?)
         };
         for (column, cell) in columns.iter().zip(&cells) {
-            let &Column::Of {
-                velocity,
-                axis,
-                particle,
-            } = column
-            else {
+            let &Column::Of { velocity, axis, particle } = column else {
                 continue;
             };
             let i = own.unwrap_or_else(|| particle.unwrap_or_default() - layout.first);
@@ -150,9 +139,7 @@ impl Layout {
     /// Returns the layout of columns, for that many particles.
     fn of(columns: &[Column], particles: usize) -> Result<Self, String> {
         if !columns.contains(&Column::Time) {
-            return Err(format!(
-                "its first line names no time: understood are {NAMES}"
-            ));
+            return Err(format!("its first line names no time: understood are {NAMES}"));
         }
         for (k, column) in columns.iter().enumerate() {
             if *column != Column::Other && columns[..k].contains(column) {
@@ -161,9 +148,7 @@ impl Layout {
         }
         let named = |wanted: bool| {
             columns.iter().filter_map(move |column| match column {
-                Column::Of {
-                    velocity, particle, ..
-                } if *velocity == wanted => Some(*particle),
+                Column::Of { velocity, particle, .. } if *velocity == wanted => Some(*particle),
                 _ => None,
             })
         };
@@ -185,13 +170,7 @@ impl Layout {
             if velocity && !layout.velocities {
                 continue;
             }
-            let has = |axis, particle| {
-                columns.contains(&Column::Of {
-                    velocity,
-                    axis,
-                    particle,
-                })
-            };
+            let has = |axis, particle| columns.contains(&Column::Of { velocity, axis, particle });
             let what = if velocity { "velocities" } else { "positions" };
             if !wide {
                 if !has(0, None) || !has(1, None) {
@@ -305,20 +284,14 @@ impl Column {
             return Self::Other;
         };
         let number = letters.as_str();
-        let bare = number
-            .strip_prefix('[')
-            .and_then(|rest| rest.strip_suffix(']'));
+        let bare = number.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
         let bare = bare.unwrap_or_else(|| number.trim_start_matches('_'));
         let particle = match bare.parse() {
             Ok(particle) => Some(particle),
             Err(_) if number.is_empty() => None,
             Err(_) => return Self::Other,
         };
-        Self::Of {
-            velocity,
-            axis,
-            particle,
-        }
+        Self::Of { velocity, axis, particle }
     }
 }
 
@@ -328,11 +301,7 @@ mod tests {
 
     #[test]
     fn names_of_many_programs_are_understood() {
-        let of = |velocity, axis, particle| Column::Of {
-            velocity,
-            axis,
-            particle,
-        };
+        let of = |velocity, axis, particle| Column::Of { velocity, axis, particle };
         for (name, column) in [
             ("t", Column::Time),
             (" Time (s) ", Column::Time),

@@ -68,8 +68,7 @@ fn add_state(raw: &mut States, record: &Record) -> Result<(), String> {
     raw.times.push(time);
     raw.digits[0].add_all(record.t.get());
     raw.digits[1].add_all(record.x.get());
-    raw.positions
-        .push(columns(&parsed(record.x.get(), "positions")?));
+    raw.positions.push(columns(&parsed(record.x.get(), "positions")?));
     if let Some(v) = record.v.filter(|v| v.get() != "null") {
         let velocities = raw.velocities.get_or_insert_default();
         velocities.push(columns(&parsed(v.get(), "velocities")?));

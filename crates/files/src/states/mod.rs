@@ -25,10 +25,7 @@ const ENDINGS: [&str; 5] = ["csv", "txt", "tsv", "json", "npz"];
 /// # Errors
 /// The file cannot be read, or its content is wrong.
 pub fn read(path: &Path, particles: usize) -> Result<States, InputError> {
-    let wrong = |why: String| InputError::File {
-        file: path.display().to_string(),
-        why,
-    };
+    let wrong = |why: String| InputError::File { file: path.display().to_string(), why };
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     let Some(ending) = ENDINGS.into_iter().find(|known| ending == *known) else {
         return Err(wrong(format!(

@@ -22,13 +22,8 @@ pub fn read(bytes: &[u8]) -> Result<States, String> {
     let mut archive = archive.map_err(|e| format!("it is no archive of NumPy arrays: {e}"))?;
     let mut left = MAX_SIZE;
     let mut find = |names: &[&str]| {
-        let there = names
-            .iter()
-            .map(|name| array(&mut archive, name, &mut left));
-        there
-            .map(Result::transpose)
-            .find_map(|found| found)
-            .transpose()
+        let there = names.iter().map(|name| array(&mut archive, name, &mut left));
+        there.map(Result::transpose).find_map(|found| found).transpose()
     };
     let wanted = |name: &str| {
         format!(
@@ -40,10 +35,7 @@ pub fn read(bytes: &[u8]) -> Result<States, String> {
     let velocities = find(&["v", "velocities"])?;
     let seconds = find(&["seconds"])?.and_then(|seconds| seconds.numbers.first().copied());
     if times.shape.len() != 1 {
-        return Err(format!(
-            "its times have the shape {:?}: one axis is wanted",
-            times.shape
-        ));
+        return Err(format!("its times have the shape {:?}: one axis is wanted", times.shape));
     }
     let digits = [&times, &positions].map(|array| Digits::binary(array.share));
     let positions = rows("positions", &positions, &times)?;
@@ -71,10 +63,8 @@ fn array(
         Err(ZipError::FileNotFound) => return Ok(None),
         found => found.map_err(|e| wrong(&e))?,
     };
-    let too_large = format!(
-        "the arrays are larger than {} MiB together: write fewer rows",
-        MAX_SIZE >> 20
-    );
+    let too_large =
+        format!("the arrays are larger than {} MiB together: write fewer rows", MAX_SIZE >> 20);
     if file.size() > *left {
         return Err(wrong(&too_large));
     }
@@ -82,9 +72,7 @@ fn array(
     // The size that the archive tells may be wrong.
     let mut file = file.take(*left + 1);
     file.read_to_end(&mut bytes).map_err(|e| wrong(&e))?;
-    *left = left
-        .checked_sub(bytes.len() as u64)
-        .ok_or_else(|| wrong(&too_large))?;
+    *left = left.checked_sub(bytes.len() as u64).ok_or_else(|| wrong(&too_large))?;
     read_array(&bytes).map(Some).map_err(|why| wrong(&why))
 }
 
@@ -129,10 +117,7 @@ fn read_array(bytes: &[u8]) -> Result<Array, String> {
     let (version, rest) = rest.split_at_checked(2).ok_or_else(damaged)?;
     let width = if version[0] == 1 { 2 } else { 4 };
     let (length, rest) = rest.split_at_checked(width).ok_or_else(damaged)?;
-    let length = length
-        .iter()
-        .rev()
-        .fold(0, |sum, b| sum << 8 | usize::from(*b));
+    let length = length.iter().rev().fold(0, |sum, b| sum << 8 | usize::from(*b));
     if length > MAX_HEADER {
         return Err(damaged());
     }
@@ -145,19 +130,13 @@ fn read_array(bytes: &[u8]) -> Result<Array, String> {
     let shape = shape.trim_matches(['(', ')']).split(',').map(str::trim);
     let shape = shape.filter(|part| !part.is_empty()).map(str::parse);
     let shape: Vec<usize> = shape.collect::<Result<_, _>>().map_err(|_| damaged())?;
-    let count = shape
-        .iter()
-        .try_fold(1usize, |count, n| count.checked_mul(*n));
+    let count = shape.iter().try_fold(1usize, |count, n| count.checked_mul(*n));
     let (size, number): (usize, fn([u8; 8]) -> f64) =
         match kind.trim_start_matches(['<', '>', '=', '|']) {
             "f8" => (8, f64::from_le_bytes),
-            "f4" => (4, |[a, b, c, d, ..]| {
-                f32::from_le_bytes([a, b, c, d]).into()
-            }),
+            "f4" => (4, |[a, b, c, d, ..]| f32::from_le_bytes([a, b, c, d]).into()),
             "i8" => (8, |bytes| i64::from_le_bytes(bytes) as f64),
-            "i4" => (4, |[a, b, c, d, ..]| {
-                i32::from_le_bytes([a, b, c, d]).into()
-            }),
+            "i4" => (4, |[a, b, c, d, ..]| i32::from_le_bytes([a, b, c, d]).into()),
             _ => {
                 return Err(format!(
                     "its numbers are of the type {kind}: save it as float64 or float32"
@@ -179,17 +158,9 @@ fn read_array(bytes: &[u8]) -> Result<Array, String> {
     });
     let numbers: Vec<_> = numbers.collect();
     Ok(Array {
-        numbers: if fortran {
-            transposed(&shape, &numbers)
-        } else {
-            numbers
-        },
+        numbers: if fortran { transposed(&shape, &numbers) } else { numbers },
         shape,
-        share: if kind.ends_with("f4") {
-            f64::from(f32::EPSILON) / 2.0
-        } else {
-            0.0
-        },
+        share: if kind.ends_with("f4") { f64::from(f32::EPSILON) / 2.0 } else { 0.0 },
     })
 }
 
@@ -197,11 +168,7 @@ fn read_array(bytes: &[u8]) -> Result<Array, String> {
 fn value<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     let (_, rest) = header.split_once(&format!("'{key}'"))?;
     let rest = rest.trim_start().strip_prefix(':')?.trim_start();
-    let end = if rest.starts_with('(') {
-        rest.find(')')? + 1
-    } else {
-        rest.find([',', '}'])?
-    };
+    let end = if rest.starts_with('(') { rest.find(')')? + 1 } else { rest.find([',', '}'])? };
     Some(rest[..end].trim())
 }
 
@@ -210,11 +177,7 @@ fn transposed(shape: &[usize], numbers: &[f64]) -> Vec<f64> {
     let mut place = vec![0; shape.len()];
     let mut rows = Vec::with_capacity(numbers.len());
     for _ in 0..numbers.len() {
-        let offset = place
-            .iter()
-            .zip(shape)
-            .rev()
-            .fold(0, |sum, (k, n)| sum * n + k);
+        let offset = place.iter().zip(shape).rev().fold(0, |sum, (k, n)| sum * n + k);
         rows.push(numbers[offset]);
         for axis in (0..shape.len()).rev() {
             place[axis] += 1;
@@ -246,9 +209,7 @@ mod tests {
         let mut writer = ZipWriter::new(Cursor::new(vec![]));
         for name in names {
             let name = format!("{name}.npy");
-            writer
-                .start_file(name, SimpleFileOptions::default())
-                .unwrap();
+            writer.start_file(name, SimpleFileOptions::default()).unwrap();
             writer.write_all(&array).unwrap();
         }
         writer.finish().unwrap().into_inner()
@@ -280,11 +241,8 @@ mod tests {
 
     #[test]
     fn a_header_allocates_nothing() {
-        for shape in [
-            "(1000000000000, 3)",
-            "(18446744073709551615, 2)",
-            "(4294967296, 4294967296)",
-        ] {
+        for shape in ["(1000000000000, 3)", "(18446744073709551615, 2)", "(4294967296, 4294967296)"]
+        {
             let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}");
             let mut bytes = b"\x93NUMPY\x01\0".to_vec();
             bytes.extend((header.len() as u16).to_le_bytes());

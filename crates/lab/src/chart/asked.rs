@@ -165,11 +165,7 @@ impl Label {
     /// Creates the label of a scene in which these disturbances were turned on, with its name in
     /// the data.
     pub fn asked(on: Disturbances, scene: &Scene, name: String) -> Self {
-        Self {
-            name,
-            title: describe(on, scene),
-            on,
-        }
+        Self { name, title: describe(on, scene), on }
     }
 
     /// Creates the label of a scene as it is.

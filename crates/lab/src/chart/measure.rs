@@ -128,8 +128,7 @@ impl Study {
 
     /// Returns the runs at neighbouring tolerances, if they were asked for.
     pub fn beside<'d>(&'d self, data: &'d Data) -> impl Iterator<Item = &'d Record> {
-        self.all(data)
-            .filter(|r| self.measured.spread && r.beside.is_some())
+        self.all(data).filter(|r| self.measured.spread && r.beside.is_some())
     }
 
     /// Returns all runs of this study's scene.
@@ -255,11 +254,7 @@ impl Study {
 
     /// Creates the record of a run that is not measured yet: its scene, method and setting.
     fn like(&self, method: &Method, control: Control) -> Record {
-        Record {
-            solver: method.name.into(),
-            setting: control.value(),
-            ..self.blank.clone()
-        }
+        Record { solver: method.name.into(), setting: control.value(), ..self.blank.clone() }
     }
 
     /// Returns the run of a method with the setting of `like`. A run that the data do not have yet
@@ -281,11 +276,7 @@ impl Study {
             None => self.measure(method, like, data, monitor)?,
         };
         let order = |run| record.order_from(run, method.is_adaptive());
-        let order = if is_new {
-            coarser_run.and_then(order)
-        } else {
-            record.order
-        };
+        let order = if is_new { coarser_run.and_then(order) } else { record.order };
         let record = Record { order, ..record };
         check_contact(self.metric, record.still(self.metric), record.until)?;
         if is_new && !record.given_up {
@@ -333,14 +324,7 @@ impl Study {
             _ if !timed => None,
             _ if method.is_foreign() => Some(once),
             Some(_) => None,
-            None => Some(time(
-                go_on,
-                scene,
-                method,
-                control,
-                &self.frames,
-                Some(once),
-            )?),
+            None => Some(time(go_on, scene, method, control, &self.frames, Some(once))?),
         };
         let seconds = seconds.map(|seconds| seconds.as_secs_f64());
         Ok(Record { seconds, ..record })
@@ -364,9 +348,9 @@ fn each(method: &Method) -> f64 {
 pub fn stiffened(scene: &Scene, factor: f64) -> Result<Scene, Failure> {
     let mut scene = scene.clone();
     match &mut scene.model {
-        Model::Network(network) => network
-            .scale_springs(factor, factor.sqrt())
-            .map_err(Failure::usage)?,
+        Model::Network(network) => {
+            network.scale_springs(factor, factor.sqrt()).map_err(Failure::usage)?
+        }
         Model::FirstOrder(_) | Model::Points(_) if factor == 1.0 => {}
         Model::FirstOrder(_) | Model::Points(_) => {
             return Err(Failure::usage(format!(
@@ -409,25 +393,10 @@ pub fn compared(
 ) -> Result<(Record, Duration), Failure> {
     let (control, begun) = (method.control(like.setting), Instant::now());
     let clock = || begun.elapsed();
-    let outcome = accuracy::measure_by(
-        &clock,
-        scene,
-        method,
-        control,
-        reference,
-        coordinates,
-        go_on,
-    );
-    let outcome = outcome
-        .map_err(Failure::run)?
-        .ok_or_else(Failure::stopped)?;
-    let Outcome {
-        errors,
-        work,
-        guarded,
-        lost,
-        time,
-    } = outcome;
+    let outcome =
+        accuracy::measure_by(&clock, scene, method, control, reference, coordinates, go_on);
+    let outcome = outcome.map_err(Failure::run)?.ok_or_else(Failure::stopped)?;
+    let Outcome { errors, work, guarded, lost, time } = outcome;
     let (floor, still) = (reference.floor, reference.still);
     let of = |error: f64| Some(error).filter(|_| lost.is_none());
     let record = Record {
@@ -472,10 +441,7 @@ pub fn compared(
 /// largest distance of the particles from where they start (m).
 pub fn precision(scene: &Scene, motion: f64) -> Precision {
     let of_numbers = MAX_REFERENCE_NUMBERS / scene.state.len() as f64;
-    let (metric, is_own) = (
-        Metric::of_motion(&scene.model),
-        scene.model.network().is_none(),
-    );
+    let (metric, is_own) = (Metric::of_motion(&scene.model), scene.model.network().is_none());
     Precision {
         metric,
         // Errors of plain numbers are relative to their size.

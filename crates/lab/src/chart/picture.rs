@@ -23,14 +23,7 @@ pub const WORK: &str = "evaluations per simulated second, linear algebra include
 
 /// Creates the diagram of a chart, with a panel for each study.
 pub fn chart(chart: &Chart) -> WorkPrecision {
-    let Chart {
-        studies,
-        data,
-        methods,
-        metric,
-        timed,
-        ..
-    } = chart;
+    let Chart { studies, data, methods, metric, timed, .. } = chart;
     let (first, scope) = (&studies[0], studies[0].scope());
     let (model, until) = (&first.scene.model, first.frames.until);
     // The work of a second says nothing where time has another unit.
@@ -106,10 +99,7 @@ pub fn keep_best(chart: &mut WorkPrecision, methods: &[&'static Method], scene: 
         }
     }
     chart.foot = foot(&drawn) + turning(scene, &drawn);
-    let _ = write!(
-        chart.subtitle,
-        "; {left_out} more solvers, cheapest nowhere, are in the table"
-    );
+    let _ = write!(chart.subtitle, "; {left_out} more solvers, cheapest nowhere, are in the table");
 }
 
 /// Explains below the chart how errors are measured, and which methods soften the springs.
@@ -204,11 +194,8 @@ pub fn problem(
         let price = prices.fold(f64::INFINITY, f64::min);
         let run = |r: &&Record| {
             let whole = |work: f64| r.lost_at.map_or(work, |at| work * r.until / at);
-            let work = if timed {
-                r.seconds.unwrap_or(whole(r.work) * price)
-            } else {
-                whole(r.work)
-            };
+            let work =
+                if timed { r.seconds.unwrap_or(whole(r.work) * price) } else { whole(r.work) };
             Measurement {
                 error: r.error(metric),
                 work: work / r.until,
@@ -218,11 +205,7 @@ pub fn problem(
                 spread: spread(r, beside, metric),
             }
         };
-        Curve {
-            style,
-            name: method.title.to_owned(),
-            runs: records.iter().map(run).collect(),
-        }
+        Curve { style, name: method.title.to_owned(), runs: records.iter().map(run).collect() }
     });
     let resolved = all.iter().map(|r| r.resolved(metric)).reduce(f64::max);
     let still = all.iter().map(|r| r.still(metric));
@@ -301,11 +284,9 @@ pub fn each(methods: &[&Method]) -> Vec<CurveStyle> {
     let mut own = OWN_STYLES.into_iter().cycle();
     let styles = methods.iter().map(|method| match method.letter {
         Some(letter) => of(letter),
-        None => own
-            .next()
-            .map_or_else(CurveStyle::default, |(colour, marker)| {
-                CurveStyle::new(colour, OWN, marker)
-            }),
+        None => own.next().map_or_else(CurveStyle::default, |(colour, marker)| {
+            CurveStyle::new(colour, OWN, marker)
+        }),
     });
     styles.collect()
 }
@@ -399,11 +380,7 @@ fn linear(colour: &str) -> [f64; 3] {
     [1, 3, 5].map(|k| {
         let digits = colour.get(k..k + 2).unwrap_or_default();
         let part = f64::from(u8::from_str_radix(digits, 16).unwrap_or(0)) / 255.0;
-        if part <= 0.040_45 {
-            part / 12.92
-        } else {
-            ((part + 0.055) / 1.055).powf(2.4)
-        }
+        if part <= 0.040_45 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
     })
 }
 
@@ -436,22 +413,13 @@ mod tests {
                 continue;
             }
             let chosen = (0..others.len()).filter(|k| choice >> k & 1 == 1);
-            let shown: Vec<_> = course
-                .iter()
-                .copied()
-                .chain(chosen.map(|k| others[k]))
-                .collect();
+            let shown: Vec<_> = course.iter().copied().chain(chosen.map(|k| others[k])).collect();
             let styles = together(&shown);
             for (k, style) in styles.iter().enumerate() {
                 assert!(k > 3 || style.colour == of(shown[k].letter.unwrap()).colour);
                 for other in &styles[..k] {
                     let apart = difference(style.colour, other.colour);
-                    assert!(
-                        apart >= MIN_DIFFERENCE,
-                        "{} {} {apart}",
-                        style.colour,
-                        other.colour
-                    );
+                    assert!(apart >= MIN_DIFFERENCE, "{} {} {apart}", style.colour, other.colour);
                 }
             }
         }

@@ -12,10 +12,7 @@ use serde::{Deserialize, Serialize};
 /// Run of a method on a scene, with its errors and its work.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "columns of a file, which say yes or no"
-)]
+#[expect(clippy::struct_excessive_bools, reason = "columns of a file, which say yes or no")]
 pub struct Record {
     /// Version of the program that measured the run.
     pub version: String,
@@ -262,9 +259,7 @@ impl Each {
     /// Begins a file with its heading.
     pub fn new(path: &Path) -> Result<Self, Failure> {
         output::check(path, &["csv"])?;
-        let mut each = Self {
-            writer: csv::Writer::from_writer(Draft::new(path)?),
-        };
+        let mut each = Self { writer: csv::Writer::from_writer(Draft::new(path)?) };
         each.row(("stiffness", "solver", "setting", "particle", "x", "y", "z"))?;
         Ok(each)
     }

@@ -40,11 +40,7 @@ pub fn words(control: Control) -> String {
         Control::Tolerance(tolerance) => return format!("tolerance {tolerance:.0e}"),
         Control::Step(step) => step,
     };
-    let (unit, per_second) = if step < 1e-3 {
-        ("µs", 1e6)
-    } else {
-        ("ms", 1e3)
-    };
+    let (unit, per_second) = if step < 1e-3 { ("µs", 1e6) } else { ("ms", 1e3) };
     let rounded = (1e3 * per_second * step).round() / 1e3;
     if !(SMALLEST_STEP..=LARGEST_STEP).contains(&step) {
         return format!("step {step:.3e} s");
@@ -171,10 +167,7 @@ impl Chart {
         let records = || study.records(&self.data);
         let resolved = records().map(|r| r.resolved(self.metric));
         let still = records().map(|r| r.still(self.metric));
-        [
-            resolved.fold(0.0, f64::max),
-            still.fold(f64::INFINITY, f64::min),
-        ]
+        [resolved.fold(0.0, f64::max), still.fold(f64::INFINITY, f64::min)]
     }
 
     /// Returns each error of the tables that says something, and the cheapest run that keeps it: by

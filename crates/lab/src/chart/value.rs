@@ -90,10 +90,7 @@ impl Chart {
     ) -> Result<Self, Failure> {
         let metric = options.error.unwrap_or(Metric::of_motion(&scene.model));
         check_metric(metric, scene)?;
-        let scope = Scope {
-            particle: options.particle,
-            at_end: options.at_end,
-        };
+        let scope = Scope { particle: options.particle, at_end: options.at_end };
         let scope = scope.checked(&scene.model).map_err(Failure::usage)?;
         let mut until = check_until(scene, options.until)?;
         let mut scenes = vec![];
@@ -108,13 +105,8 @@ impl Chart {
             until = Some(until.map_or(found.until, |until: f64| until.min(found.until)));
             scenes.push((factor, scene, found.motion));
         }
-        let until = until
-            .filter(|_| !scenes.is_empty())
-            .ok_or_else(Failure::stopped)?;
-        let measured = Measured {
-            timed: options.timed,
-            spread: options.spread,
-        };
+        let until = until.filter(|_| !scenes.is_empty()).ok_or_else(Failure::stopped)?;
+        let measured = Measured { timed: options.timed, spread: options.spread };
         let studies = scenes.into_iter().map(|(factor, scene, motion)| {
             let of = (metric, scope, motion);
             Study::new(scene, label, factor, until, &methods, of, measured)
@@ -167,8 +159,7 @@ impl Chart {
         let data = &self.data;
         let costly = self.studies.iter().flat_map(|study| &study.too_costly);
         let costly: Vec<_> = costly.map(|method| method.name).collect();
-        self.studies
-            .retain(|study| study.records(data).next().is_some());
+        self.studies.retain(|study| study.records(data).next().is_some());
         match (self.studies.is_empty(), &costly[..]) {
             (false, _) => Ok(()),
             (true, []) => Err(Failure::stopped()),
@@ -254,9 +245,7 @@ impl Chart {
         let curves = diagram.problems[0].curves.iter();
         let runs_of = |method: &&'static Method| {
             let drawn = picture::drawn(&records, method, self.metric).into_iter();
-            drawn
-                .map(|r| (*method, method.control(r.setting)))
-                .collect()
+            drawn.map(|r| (*method, method.control(r.setting))).collect()
         };
         curves
             .map(|curve| {
@@ -323,13 +312,7 @@ pub fn look_ahead(
     let Some(found) = horizon(scene, longest, &|| monitor.go_on()).map_err(Failure::run)? else {
         return Ok(None);
     };
-    let Horizon {
-        until,
-        lyapunov,
-        growth,
-        buckles,
-        ..
-    } = found;
+    let Horizon { until, lyapunov, growth, buckles, .. } = found;
     let of = if stiffness == 1.0 {
         scene.name.clone()
     } else {
@@ -360,10 +343,7 @@ pub fn look_ahead(
         Some(_) => {}
         None => monitor.note(&format!("{of}: {why}; runs of {until} s"))?,
     }
-    Ok(Some(Horizon {
-        until: asked.unwrap_or(until),
-        ..found
-    }))
+    Ok(Some(Horizon { until: asked.unwrap_or(until), ..found }))
 }
 
 /// Checks that something moves in the scene.

@@ -74,11 +74,7 @@ pub fn report(on: Disturbances, scene: &Scene, goal: (Goal, Scope), choice: &Cho
             },
             format!("{:.1e}", c.error),
             format!("{:.0}", c.work / until),
-            if cost < 0.1 {
-                format!("{:.2} µs", 1e3 * cost)
-            } else {
-                format!("{cost:.2} ms")
-            },
+            if cost < 0.1 { format!("{:.2} µs", 1e3 * cost) } else { format!("{cost:.2} ms") },
         ]);
     }
     let (goal, scope) = goal;
@@ -114,11 +110,7 @@ fn typed(control: Control) -> String {
     }
     let power = 10f64.powi(3 - value.log10().floor() as i32);
     let rounded = (value * power * (1.0 + 1e-12)).floor() / power;
-    if rounded < 1e-3 {
-        format!("{rounded:e}")
-    } else {
-        format!("{rounded}")
-    }
+    if rounded < 1e-3 { format!("{rounded:e}") } else { format!("{rounded}") }
 }
 
 /// Writes the command line that runs the scene with a method at a step or a tolerance.

@@ -60,14 +60,7 @@ impl ChooseOptions {
     /// Creates options with this goal, and otherwise the defaults, by evaluations.
     #[must_use]
     pub fn new(goal: Goal) -> Self {
-        Self {
-            goal,
-            metric: None,
-            until: None,
-            particle: None,
-            at_end: false,
-            timed: false,
-        }
+        Self { goal, metric: None, until: None, particle: None, at_end: false, timed: false }
     }
 }
 
@@ -155,10 +148,7 @@ impl<'a> Search<'a> {
     ) -> Result<Self, Failure> {
         let metric = options.metric.unwrap_or(Metric::of_motion(&scene.model));
         check_metric(metric, scene)?;
-        let asked = Scope {
-            particle: options.particle,
-            at_end: options.at_end,
-        };
+        let asked = Scope { particle: options.particle, at_end: options.at_end };
         check_until(scene, options.until)?;
         match options.goal {
             Goal::Budget(budget) => BUDGETS.check(budget)?,
@@ -252,11 +242,7 @@ impl<'a> Search<'a> {
             begun += 1;
         };
         let go_on = &|| monitor.go_on();
-        let demand = Demand {
-            metric,
-            error,
-            timed: self.options.timed,
-        };
+        let demand = Demand { metric, error, timed: self.options.timed };
         let found = choose_among(methods, scene, reference, demand, go_on, begin);
         monitor.clear();
         let mut found = found.map_err(Failure::run)?.ok_or_else(Failure::stopped)?;
@@ -309,9 +295,7 @@ impl<'a> Search<'a> {
             let most = MAX_STEPS.min(reference.max_work) as u64;
             for control in ladder(&modes, method, &reference.frames, most).map_err(Failure::run)? {
                 let outcome = measure(scene, method, control, reference, &|| monitor.go_on());
-                let outcome = outcome
-                    .map_err(Failure::run)?
-                    .ok_or_else(Failure::stopped)?;
+                let outcome = outcome.map_err(Failure::run)?.ok_or_else(Failure::stopped)?;
                 if outcome.is_too_costly() {
                     break;
                 }

@@ -181,9 +181,8 @@ fn between(grid: &Grid) -> Vec<Pace> {
     let all = (2..=MAX_EVERY).filter(|points| grid.meets(*points));
     let all = all.flat_map(|points| PARTS.map(|steps| Pace { steps, points }));
     let all = all.filter(|pace| gcd(pace.points, pace.steps) == 1);
-    let mut all: Vec<_> = all
-        .filter(|pace| is_typed(seconds(pace)) || is_typed(1.0 / seconds(pace)))
-        .collect();
+    let mut all: Vec<_> =
+        all.filter(|pace| is_typed(seconds(pace)) || is_typed(1.0 / seconds(pace))).collect();
     all.sort_by(|a, b| seconds(b).total_cmp(&seconds(a)));
     all.sort_by_key(|pace| (pace.steps < pace.points, !has(1, seconds(pace))));
     all

@@ -137,8 +137,7 @@ impl Course<'_> {
         let precision = precision(self.scene, self.horizon.motion);
         let go_on = &|| self.monitor.go_on();
         let made = reference(go_on, self.scene, frames, Scope::default(), precision);
-        self.references
-            .push(Failure::unless_stopped(made)?.ok_or_else(stopped)?);
+        self.references.push(Failure::unless_stopped(made)?.ok_or_else(stopped)?);
         Ok(&self.references[self.references.len() - 1])
     }
 
@@ -171,10 +170,7 @@ impl Course<'_> {
                 ),
             });
         }
-        Ok(Frames {
-            until,
-            count: count as u64,
-        })
+        Ok(Frames { until, count: count as u64 })
     }
 }
 
@@ -196,10 +192,7 @@ pub fn frame_at(reference: &Reference, t: f64) -> Option<f64> {
 fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) -> Judgement {
     let model = &scene.model;
     let mut errors = vec![];
-    let mut worst = Worst {
-        error: -1.0,
-        ..Worst::default()
-    };
+    let mut worst = Worst { error: -1.0, ..Worst::default() };
     let (mut motion, n) = (0.0, 3 * model.particles());
     let mut turned = [0.0f64; 2];
     let network = conserving(model).filter(|_| rows.velocities(0).is_some());
@@ -215,12 +208,7 @@ fn measured(scene: &Scene, states: &States, rows: &Rows, reference: &Reference) 
         errors.push((time, error));
         if error > worst.error {
             let (particle, distance) = farthest(&x, rows.positions(k));
-            worst = Worst {
-                error,
-                time,
-                particle,
-                distance,
-            };
+            worst = Worst { error, time, particle, distance };
         }
         if let (Some(network), Some(own)) = (network, rows.velocities(k)) {
             let right = network.energy_at(at, &x, &v);

@@ -27,10 +27,7 @@ pub fn chart(
     let timed = files.iter().any(|(_, it)| it.seconds.is_some());
     let (methods, metric) = (methods(scene, &[])?, Metric::Position);
     let of = (metric, Scope::default(), motion);
-    let measured = Measured {
-        timed,
-        spread: false,
-    };
+    let measured = Measured { timed, spread: false };
     let study = Study::new(scene.clone(), label, 1.0, until, &methods, of, measured);
     let mut measured = Chart {
         studies: vec![study],

@@ -28,10 +28,7 @@ impl Plain {
         let pinned = (0..list.mass.len()).map(|i| list.pinned.contains(&i));
         Ok(Self {
             pinned: pinned.collect(),
-            kinds: network
-                .flat_map(Network::springs)
-                .map(|it| it.kind)
-                .collect(),
+            kinds: network.flat_map(Network::springs).map(|it| it.kind).collect(),
             list,
         })
     }
@@ -133,11 +130,7 @@ impl<'a> Forces<'a> {
 
     /// Rounds a number as the program does.
     pub fn rounded(&self, number: f64) -> f64 {
-        if self.is_single {
-            f64::from(number as f32)
-        } else {
-            number
-        }
+        if self.is_single { f64::from(number as f32) } else { number }
     }
 
     /// Returns whether a particle never moves.

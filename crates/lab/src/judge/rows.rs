@@ -63,14 +63,7 @@ impl<'a> Rows<'a> {
             Some(grid) => grid.times().collect(),
             None => kept.iter().map(|k| times[*k]).collect(),
         };
-        Ok(Self {
-            states,
-            kept,
-            times,
-            grid,
-            count,
-            every,
-        })
+        Ok(Self { states, kept, times, grid, count, every })
     }
 
     /// Returns the number of rows that are judged.
@@ -120,9 +113,7 @@ impl<'a> Rows<'a> {
 fn round(number: usize) -> usize {
     let decades = std::iter::successors(Some(1), |decade: &usize| decade.checked_mul(10));
     let all = decades.flat_map(|decade| [1, 2, 5].map(|digit| digit * decade));
-    all.into_iter()
-        .find(|round| *round >= number)
-        .unwrap_or(number)
+    all.into_iter().find(|round| *round >= number).unwrap_or(number)
 }
 
 /// Returns the root mean square over the particles of the distance between two states' positions
@@ -149,9 +140,7 @@ pub fn farthest(a: &[f64], b: &[f64]) -> (usize, f64) {
 
 /// Coordinates of particles, column-major.
 pub fn columns(vectors: &[[f64; 3]]) -> Vec<f64> {
-    (0..3)
-        .flat_map(|axis| vectors.iter().map(move |v| v[axis]))
-        .collect()
+    (0..3).flat_map(|axis| vectors.iter().map(move |v| v[axis])).collect()
 }
 
 /// Largest distance of a particle that is in its place, over the size of the scene.
@@ -216,9 +205,8 @@ fn is_order(start: &[f64], own: &[f64], near: f64) -> bool {
     let sorted = |x: &[f64]| {
         // No key is -0.
         let key = |value: f64| (value / (4.0 * unit)).round() + 0.0;
-        let mut all: Vec<_> = (0..n)
-            .map(|i| [key(x[i]), key(x[n + i]), key(x[2 * n + i])])
-            .collect();
+        let mut all: Vec<_> =
+            (0..n).map(|i| [key(x[i]), key(x[n + i]), key(x[2 * n + i])]).collect();
         all.sort_by(|a, b| {
             let [x, y, z] = std::array::from_fn(|axis| a[axis].total_cmp(&b[axis]));
             x.then(y).then(z)
@@ -226,9 +214,7 @@ fn is_order(start: &[f64], own: &[f64], near: f64) -> bool {
         all
     };
     let pairs = sorted(start).into_iter().zip(sorted(own));
-    pairs
-        .flat_map(|(a, b)| a.into_iter().zip(b))
-        .all(|(a, b)| (a - b).abs() <= 1.0)
+    pairs.flat_map(|(a, b)| a.into_iter().zip(b)).all(|(a, b)| (a - b).abs() <= 1.0)
 }
 
 /// Returns the unit in which positions are those of the scene.

@@ -79,13 +79,8 @@ const ALL_FORCES_FIRST: Option<&str> =
     Some("does each particle move before the forces on the next are taken? All forces come first");
 
 /// Row of a scheme that serves all networks, and has no slip.
-const PLAIN: Scheme = Scheme {
-    title: "",
-    slip: None,
-    question: None,
-    needs: Needs::None,
-    steps: Taylor,
-};
+const PLAIN: Scheme =
+    Scheme { title: "", slip: None, question: None, needs: Needs::None, steps: Taylor };
 
 /// All schemes: first those of textbooks, then those with a question.
 #[rustfmt::skip]
@@ -179,14 +174,7 @@ impl<'a> PlainRun<'a> {
         let start = forces.factor(Constant::Start);
         let v = v.into_iter().map(|v| v.map(|v| start * v)).collect();
         let h = forces.rounded(h);
-        let mut run = Self {
-            forces,
-            scheme,
-            h,
-            is_new: true,
-            x,
-            v,
-        };
+        let mut run = Self { forces, scheme, h, is_new: true, x, v };
         run.round();
         run
     }

@@ -84,10 +84,7 @@ pub fn search(judged: &Judged, at_start: bool) -> Option<Match> {
         part: None,
         positions: vec![],
         is_single: false,
-        result: Match {
-            steps: [0.0, f64::INFINITY],
-            ..Match::default()
-        },
+        result: Match { steps: [0.0, f64::INFINITY], ..Match::default() },
     };
     let (correct, slips) = (search.correct(), search.slips());
     let is_scheme = |way: &Way| matches!(way, Way::Scheme(..));
@@ -251,13 +248,7 @@ impl Search<'_> {
         let compared = judged.compare(trial, &bound)?;
         let (rows, last) = (judged.rows, judged.last());
         let ends = (compared.rows < rows.len()).then(|| rows.times[compared.rows.max(1) - 1]);
-        let agreement = Agreement {
-            trial,
-            step,
-            compared,
-            until: ends,
-            is_single: self.is_single,
-        };
+        let agreement = Agreement { trial, step, compared, until: ends, is_single: self.is_single };
         let moved = compared.moved.max(judged.motion);
         let clear = moved / judged.tolerance(compared.rows.saturating_sub(1), compared.moved);
         let since = match trial.start {

@@ -530,20 +530,14 @@ impl<'a> Judged<'a> {
 
     /// Returns the differences of a trial from the first rows. `None` if it blows up there.
     fn residuals(&self, trial: Trial, end: usize, bound: Bound) -> Option<Residuals> {
-        let mut found = Residuals {
-            all: vec![],
-            bound: 0.0,
-            worst: 0.0,
-        };
+        let mut found = Residuals { all: vec![], bound: 0.0, worst: 0.0 };
         let (start, mut most) = (self.start(trial), 0.0);
         let passed = self.follow(trial, false, end, &mut |k, [x, _]| {
             let own = self.rows.positions(k);
             most = f64::max(most, distance(own, start));
             let bound = bound(k, most);
             found.bound += own.len() as f64 / 3.0 * bound.powi(2);
-            found.worst = found
-                .worst
-                .max(distance(x, own) / bound.max(f64::MIN_POSITIVE));
+            found.worst = found.worst.max(distance(x, own) / bound.max(f64::MIN_POSITIVE));
             found.all.extend(x.iter().zip(own).map(|(x, own)| x - own));
             true
         })?;

@@ -61,10 +61,7 @@ pub fn judge_states(
         StatesOf::File(path) => (path.display().to_string(), read(path, particles)?),
         StatesOf::Npz(name, bytes) => {
             let states = parse(bytes, "npz", particles);
-            (
-                name.into(),
-                states.map_err(|why| Failure::usage(format!("{name}: {why}")))?,
-            )
+            (name.into(), states.map_err(|why| Failure::usage(format!("{name}: {why}")))?)
         }
     };
     let last = states.times.last().copied().unwrap_or_default();

@@ -32,10 +32,7 @@ pub fn text(name: &str, judgement: &Judgement, within: Option<f64>) -> String {
     }
     if let Some(Drift { worst, time, .. }) = judgement.momentum {
         let (worst, time) = (amount(worst), seconds(time));
-        line(
-            "momentum",
-            format!("off by {worst} kg m/s at worst, at {time}"),
-        );
+        line("momentum", format!("off by {worst} kg m/s at worst, at {time}"));
     }
     for (key, text) in lines_of(judgement) {
         line(key, text);
@@ -59,10 +56,7 @@ pub fn too_large(judgement: &Judgement, within: f64) -> String {
     let error = judgement.worst.error;
     match judgement.not_finite_at {
         Some(t) if error <= within => format!("its numbers are not finite from {} on", seconds(t)),
-        _ => format!(
-            "it errs by {} m at worst, more than {within} m",
-            amount(error)
-        ),
+        _ => format!("it errs by {} m at worst, more than {within} m", amount(error)),
     }
 }
 
@@ -191,10 +185,7 @@ fn found(judgement: &Judgement, agreement: &Agreement) -> Vec<(&'static str, Str
     };
     let until = agreement.until.map(|t| format!(", until {}", seconds(t)));
     let until = until.unwrap_or_default();
-    let mut lines = vec![(
-        "method",
-        format!("agrees with {} {how}{until}", way(agreement)),
-    )];
+    let mut lines = vec![("method", format!("agrees with {} {how}{until}", way(agreement)))];
     let points = agreement.trial.pace.points;
     if points > 1 {
         let text = format!(
@@ -261,10 +252,7 @@ fn not_found(judgement: &Judgement) -> Vec<(&'static str, String)> {
     let mut lines = vec![("method", format!("agrees with no solver at {steps}{known}"))];
     let mut near = |key, near: &Agreement, only| {
         let away = amount(near.compared.distance);
-        lines.push((
-            key,
-            format!("{} is {only}{away} m away at worst", way(near)),
-        ));
+        lines.push((key, format!("{} is {only}{away} m away at worst", way(near))));
     };
     if let Some(nearest) = &found.nearest {
         near("nearest", nearest, "");
@@ -280,11 +268,7 @@ fn not_found(judgement: &Judgement) -> Vec<(&'static str, String)> {
 fn way(agreement: &Agreement) -> String {
     let title = agreement.trial.way.title();
     // Methods that are called after people have no article.
-    let middle = [
-        "explicit trapezoid",
-        "explicit midpoint",
-        "implicit midpoint",
-    ];
+    let middle = ["explicit trapezoid", "explicit midpoint", "implicit midpoint"];
     let has_article = middle.iter().any(|begin| title.starts_with(begin));
     let article = if has_article { "the " } else { "" };
     let precision = ["", " in single precision"][usize::from(agreement.is_single)];
@@ -306,9 +290,7 @@ fn slips(trial: &Trial) -> String {
 pub fn mistake(agreement: &Agreement) -> Option<String> {
     let slips = slips(&agreement.trial);
     let words = [", ", "but ", "with "];
-    let words = words
-        .iter()
-        .fold(&*slips, |rest, word| rest.trim_start_matches(word));
+    let words = words.iter().fold(&*slips, |rest, word| rest.trim_start_matches(word));
     (!words.is_empty()).then(|| words.into())
 }
 

@@ -60,11 +60,7 @@ impl GridError {
         let order = coarser.map(|coarser| (coarser / finer).log2());
         let order = order.filter(|order| *order > MIN_ORDER);
         let share = order.map_or(1.0, |order| 1.0 - (-order.min(MAX_ORDER)).exp2());
-        Self {
-            grid,
-            error: finer / share,
-            found: order.map_or(Found::Finer, Found::Order),
-        }
+        Self { grid, error: finer / share, found: order.map_or(Found::Finer, Found::Order) }
     }
 
     /// Returns the observed order, if grids converge.
@@ -112,26 +108,15 @@ pub fn grid_error(
     if particles > MAX_PARTICLES {
         return Ok(None);
     }
-    let compared = Compared {
-        quantity: Quantity::Position,
-        frames,
-        scope,
-    };
+    let compared = Compared { quantity: Quantity::Position, frames, scope };
     let accurate = (method, Control::Tolerance(TOLERANCE));
     let like = Known::new(request, scene, compared, accurate);
     let mut whole = None;
     let mut change = |factor: f64| {
-        let Ok(Regridded {
-            description,
-            places,
-        }) = regridded(own, factor, particles)
-        else {
+        let Ok(Regridded { description, places }) = regridded(own, factor, particles) else {
             return Ok(None);
         };
-        let like = Known {
-            model: format!("grid of {}", grid(&description)),
-            ..like.clone()
-        };
+        let like = Known { model: format!("grid of {}", grid(&description)), ..like.clone() };
         if let Some(known) = known.find(&like) {
             return Ok(Some(known.change));
         }
@@ -180,11 +165,7 @@ pub fn grid(description: &Description) -> String {
     let fluid = || {
         let fluid = description.fluid.first()?;
         let edges = fluid.size[..fluid.dimensions.into()].iter();
-        Some(
-            edges
-                .map(|edge| (edge / fluid.spacing).round() as usize)
-                .collect(),
-        )
+        Some(edges.map(|edge| (edge / fluid.spacing).round() as usize).collect())
     };
     let grid = cloth.or_else(jelly).or_else(solid).or_else(fluid);
     let grid = grid.unwrap_or_default();
@@ -226,21 +207,9 @@ pub struct Known {
 impl Row for Known {
     fn is_same(&self, other: &Self) -> bool {
         let run = |known: &Self| (known.until.to_bits(), known.tolerance.to_bits());
-        (
-            &self.version,
-            &self.scene,
-            &self.of,
-            &self.scope,
-            &self.solver,
-            &self.model,
-        ) == (
-            &other.version,
-            &other.scene,
-            &other.of,
-            &other.scope,
-            &other.solver,
-            &other.model,
-        ) && run(self) == run(other)
+        (&self.version, &self.scene, &self.of, &self.scope, &self.solver, &self.model)
+            == (&other.version, &other.scene, &other.of, &other.scope, &other.solver, &other.model)
+            && run(self) == run(other)
     }
 
     fn check(&mut self) -> &mut String {
@@ -263,11 +232,7 @@ impl Known {
         hash.add([u8::from(request.options.on.swing)]);
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
-            scene: format!(
-                "{} {:016x}",
-                request.source.fingerprint(scene),
-                hash.value()
-            ),
+            scene: format!("{} {:016x}", request.source.fingerprint(scene), hash.value()),
             of: compared.quantity.name().into(),
             scope: words(compared.scope, &scene.model),
             until: compared.frames.until,

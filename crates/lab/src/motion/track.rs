@@ -40,11 +40,7 @@ impl Track {
             let pairs = coarse.iter().zip(fine);
             pairs.map(|(c, f)| f + share * (f - c)).collect()
         });
-        Self {
-            values: values.collect(),
-            time: Duration::ZERO,
-            work: 0.0,
-        }
+        Self { values: values.collect(), time: Duration::ZERO, work: 0.0 }
     }
 }
 
@@ -117,11 +113,7 @@ impl Compared {
     /// scope says so.
     pub fn distance(self, a: &Track, b: &Track) -> f64 {
         let pairs = a.values.iter().zip(&b.values);
-        let from = if self.scope.at_end {
-            a.values.len() - 1
-        } else {
-            0
-        };
+        let from = if self.scope.at_end { a.values.len() - 1 } else { 0 };
         let distances = pairs.skip(from).map(|(a, b)| {
             let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
             (squares.sum::<f64>() / (a.len() / 3).max(1) as f64).sqrt()

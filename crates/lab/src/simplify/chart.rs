@@ -62,14 +62,11 @@ pub fn chart(
         return Ok(None);
     };
     let difference = |grid: &Grid| models.compared.distance(&own.motion, &grid.motion);
-    let half = grids
-        .iter()
-        .find(|grid| 2 * grid.scene.model.particles() < own.scene.model.particles());
+    let half =
+        grids.iter().find(|grid| 2 * grid.scene.model.particles() < own.scene.model.particles());
     let estimate = GridError::new(String::new(), half.map(difference), difference(finest));
     // The finest grid errs by 2^-p of what the grid in use does.
-    let share = estimate
-        .order()
-        .map_or(0.0, |order| 1.0 / (order.exp2() - 1.0));
+    let share = estimate.order().map_or(0.0, |order| 1.0 / (order.exp2() - 1.0));
     let truth = Track::extrapolated(&own.motion, &finest.motion, share);
     if estimate.order().is_none() {
         // The finest grid cannot be compared with itself.
@@ -78,10 +75,7 @@ pub fn chart(
     let long = LONG_STEPS.iter().filter_map(|name| find(name));
     let long = long.filter(|method| *method != whole.method);
     let supports = |method: &&Method| method.check(models.scene.model.system()).is_ok();
-    let methods: Vec<_> = [whole.method]
-        .into_iter()
-        .chain(long.filter(supports))
-        .collect();
+    let methods: Vec<_> = [whole.method].into_iter().chain(long.filter(supports)).collect();
     let monitor = models.monitor;
     monitor.expect((grids.len() * methods.len() * MAX_RUNS) as f64);
     let motion = models.compared.way(&models.whole);
@@ -97,11 +91,8 @@ pub fn chart(
         // Long steps that err less than short ones do so because their errors and those of the grid
         // cancel by chance.
         runs.retain(|run| run.error > LEAST_SHARE * least && run.error < motion);
-        let mut curve = Curve {
-            style: CurveStyle::new(colour, &[], *marker),
-            name: grid.name.clone(),
-            runs,
-        };
+        let mut curve =
+            Curve { style: CurveStyle::new(colour, &[], *marker), name: grid.name.clone(), runs };
         curve.runs = curve.joined().into_iter().cloned().collect();
         balance.extend(balanced(&curve.runs, BALANCE * least));
         curves.push(curve);
@@ -109,22 +100,15 @@ pub fn chart(
     if curves.iter().all(|curve| curve.runs.is_empty()) {
         return Ok(None);
     }
-    let guide = (balance.len() > 1).then(|| Guide {
-        name: "errors of grid and time steps are equal".into(),
-        points: balance,
-    });
+    let guide = (balance.len() > 1)
+        .then(|| Guide { name: "errors of grid and time steps are equal".into(), points: balance });
     let foot = foot(guide.is_some(), estimate.order().is_some());
-    let solvers = methods
-        .iter()
-        .map(|it| format!("{} {}", short(it), it.title));
+    let solvers = methods.iter().map(|it| format!("{} {}", short(it), it.title));
     let solvers: Vec<_> = solvers.collect();
     let until = models.compared.frames.until;
     Ok(Some(WorkPrecision {
         title,
-        subtitle: format!(
-            "{until} s of motion on different grids; {}",
-            solvers.join("; ")
-        ),
+        subtitle: format!("{until} s of motion on different grids; {}", solvers.join("; ")),
         x_label: format!(
             "error {}, of grid and time steps together ({})",
             match models.compared.quantity {
@@ -135,12 +119,7 @@ pub fn chart(
             models.compared.unit()
         ),
         y_label: "computing time per simulated second (s)".into(),
-        problems: vec![Problem {
-            curves,
-            still: Some(motion),
-            guide,
-            ..Problem::default()
-        }],
+        problems: vec![Problem { curves, still: Some(motion), guide, ..Problem::default() }],
         foot,
         held: "the time steps err more than the grid".into(),
     }))
@@ -186,14 +165,9 @@ fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
     let particles = models.scene.model.particles();
     let mut all: Vec<Grid> = vec![];
     for factor in FACTORS.into_iter().chain([1.0]) {
-        let regridded = regridded(own, factor, particles)
-            .ok()
-            .filter(|_| factor != 1.0);
+        let regridded = regridded(own, factor, particles).ok().filter(|_| factor != 1.0);
         let (description, places) = match regridded {
-            Some(Regridded {
-                description,
-                places,
-            }) => (description, Some(places)),
+            Some(Regridded { description, places }) => (description, Some(places)),
             None if factor == 1.0 => (own.clone(), None),
             None => continue,
         };
@@ -202,18 +176,11 @@ fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
         };
         let name = format!("grid of {}", grid(&description));
         if all.iter().all(|grid| grid.name != name) {
-            all.push(Grid {
-                name,
-                scene: models.build(&description)?,
-                places,
-                motion,
-            });
+            all.push(Grid { name, scene: models.build(&description)?, places, motion });
         }
     }
     all.sort_by_key(|grid| grid.scene.model.particles());
-    let has_finer = all
-        .last()
-        .is_some_and(|last| last.scene.model.particles() > particles);
+    let has_finer = all.last().is_some_and(|last| last.scene.model.particles() > particles);
     Ok((all.len() > 1 && has_finer).then_some(all))
 }
 
@@ -230,9 +197,7 @@ fn measured(
     let modes = spectrum(scene.model.system(), 0.0, &scene.state);
     let rungs = ladder(&modes, method, &compared.frames, MAX_WORK).map_err(Failure::run)?;
     // The limit of stability is that of the start, and may be longer in motion.
-    let first = rungs
-        .first()
-        .and_then(|control| coarser(*control, &compared.frames));
+    let first = rungs.first().and_then(|control| coarser(*control, &compared.frames));
     let mut found = vec![];
     let places: Option<&Places> = grid.places.as_deref();
     for control in first.into_iter().chain(rungs).take(MAX_RUNS) {

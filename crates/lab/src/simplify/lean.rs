@@ -109,12 +109,7 @@ pub fn assemble(models: &Models, all: &[Model], error: f64) -> Result<LeanModel,
             track.map_or(f64::INFINITY, |track| models.change(&track))
         };
         if found <= max_change {
-            return Ok(LeanModel {
-                description,
-                parts: left_out,
-                factor,
-                error: found,
-            });
+            return Ok(LeanModel { description, parts: left_out, factor, error: found });
         }
         // The part that changes the motion most is restored first, and the grid last.
         if parts.pop().is_none() {
@@ -148,11 +143,7 @@ pub fn solve(
         let run = models.compared.follow(&scene, by, places, go_on)?;
         let work = run.as_ref().map_or(0.0, |track| track.work);
         let error = run.map_or(f64::INFINITY, |track| models.change(&track));
-        Ok::<_, Failure>(Some(Trial {
-            error,
-            work,
-            outcome: error,
-        }))
+        Ok::<_, Failure>(Some(Trial { error, work, outcome: error }))
     };
     let most = error - models.uncertainty;
     // The accurate run of the whole scene is a candidate, too.

@@ -17,9 +17,7 @@ use crate::motion::{Compared, Known, Places, Track, grid};
 
 /// Relative tolerances at which the whole scene is tried, the largest first. The first that is
 /// accurate enough is that of all models.
-const TOLERANCES: [f64; 10] = [
-    1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12,
-];
+const TOLERANCES: [f64; 10] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
 /// Tolerance of the run that checks another, over that one's.
 const CHECK_RATIO: f64 = 0.1;
 /// Error of the time steps in a model that is sought, over the error that is asked for.
@@ -145,10 +143,7 @@ impl<'a> Models<'a> {
         let mut why = None;
         for factor in FACTORS {
             match regridded(own, factor, self.scene.model.particles()) {
-                Ok(Regridded {
-                    description,
-                    places,
-                }) => {
+                Ok(Regridded { description, places }) => {
                     if all.iter().all(|model| model.description != description) {
                         let name = format!("grid of {}", grid(&description));
                         all.push(Model {

@@ -34,11 +34,7 @@ pub fn report(
         models.uncertainty
     );
     let lean = answer.map(|answer| &answer.model);
-    let rows = if all.is_empty() {
-        vec![]
-    } else {
-        rows(all, (motion, unit), error, lean)
-    };
+    let rows = if all.is_empty() { vec![] } else { rows(all, (motion, unit), error, lean) };
     let mut foot = String::new();
     let of_grid = of_grid(all, &models.request.source.description);
     if let Some(of_grid) = of_grid.filter(|_| compared.quantity == Quantity::Position) {
@@ -77,11 +73,9 @@ fn rows(
     for model in models {
         let numbers = match &model.effect {
             Err(_) => ["-"; 3].map(String::from),
-            Ok(effect) => [
-                number(effect.change),
-                percent(effect.change / motion),
-                percent(1.0 - effect.time),
-            ],
+            Ok(effect) => {
+                [number(effect.change), percent(effect.change / motion), percent(1.0 - effect.time)]
+            }
         };
         let verdict = verdict(model, error, lean).into();
         let name = [model.name.clone()].into_iter();
@@ -114,9 +108,7 @@ pub fn verdict<'a>(model: &'a Model, error: f64, lean: Option<&LeanModel>) -> &'
 /// finer grid was measured.
 pub fn of_grid(models: &[Model], description: &Description) -> Option<GridError> {
     let change = |factor: f64| {
-        let model = models
-            .iter()
-            .find(|m| m.part.is_none() && m.factor == factor)?;
+        let model = models.iter().find(|m| m.part.is_none() && m.factor == factor)?;
         model.effect.as_ref().ok().map(|effect| effect.change)
     };
     Some(GridError::new(grid(description), change(0.5), change(2.0)?))
@@ -127,11 +119,7 @@ fn of_lean(answer: &Answer, unit: &str) -> String {
     let (lean, whole) = (&answer.model, &answer.whole);
     let said = |solved: &Solved| {
         let error = number(solved.error);
-        format!(
-            "{}, {}: error {error} {unit}",
-            solved.method.title,
-            words(solved.control)
-        )
+        format!("{}, {}: error {error} {unit}", solved.method.title, words(solved.control))
     };
     let lasts = |solved: &Solved| format!("{:.3} ms a simulated second", 1e3 * solved.time);
     let of_whole = format!("  whole  {}, {}\n", said(whole), lasts(whole));
@@ -162,11 +150,7 @@ fn of_lean(answer: &Answer, unit: &str) -> String {
 
 /// Writes a number with two digits.
 fn number(x: f64) -> String {
-    if x == 0.0 {
-        "0".into()
-    } else {
-        format!("{x:.1e}")
-    }
+    if x == 0.0 { "0".into() } else { format!("{x:.1e}") }
 }
 
 /// Writes a share in percent.

@@ -260,29 +260,17 @@ fn whole<'a>(
         )));
     }
     let (error, quantity) = (ERRORS.check(options.error)?, options.of);
-    options
-        .until
-        .map(|until| HORIZONS.check(until))
-        .transpose()?;
-    let scope = Scope {
-        particle: options.particle,
-        at_end: options.at_end,
-    };
+    options.until.map(|until| HORIZONS.check(until)).transpose()?;
+    let scope = Scope { particle: options.particle, at_end: options.at_end };
     let scope = scope.checked(&scene.model).map_err(Failure::usage)?;
     if scope.particle.is_some() && quantity != Quantity::Position {
-        return Err(Failure::usage(
-            "--particle: only positions are those of a particle",
-        ));
+        return Err(Failure::usage("--particle: only positions are those of a particle"));
     }
     monitor.stage("looking ahead");
     let horizon = look_ahead(&scene, options.until, 1.0, monitor)?.ok_or_else(Failure::stopped)?;
     check_motion(&scene, &horizon)?;
     monitor.stage("whole scene");
-    let compared = Compared {
-        quantity,
-        frames: Frames::new(horizon.until),
-        scope,
-    };
+    let compared = Compared { quantity, frames: Frames::new(horizon.until), scope };
     let models = Models::new(request, scene, compared, error, monitor)?;
     let motion = compared.way(&models.whole);
     if error > motion {
@@ -309,11 +297,8 @@ fn leanest(models: &Models, all: &[Model], error: f64) -> Result<Answer, Failure
     })?;
     monitor.stage("leanest scene");
     let model = assemble(models, all, error)?;
-    let mut solved = if model.is_whole() {
-        None
-    } else {
-        solve(models, &model, error, whole.method.name)?
-    };
+    let mut solved =
+        if model.is_whole() { None } else { solve(models, &model, error, whole.method.name)? };
     if let Some(solved) = &mut solved {
         time_in_turns(models, &model, solved, &mut whole)?;
     }
@@ -327,11 +312,7 @@ fn leanest(models: &Models, all: &[Model], error: f64) -> Result<Answer, Failure
     };
     let found = solved.filter(pays).map(|solved| (model, solved));
     let (model, solved) = found.unwrap_or_else(|| (LeanModel::whole(models), whole));
-    Ok(Answer {
-        model,
-        solved,
-        whole,
-    })
+    Ok(Answer { model, solved, whole })
 }
 
 /// Writes the leanest scene as a scene file, with its solver and its step.
@@ -340,9 +321,7 @@ fn lean_scene(models: &Models, answer: &Answer) -> Result<LeanScene, Failure> {
     let mut description = model.description.clone();
     description.solver = Some(solved.method.name.into());
     description.step = Some(solved.control.value());
-    description
-        .duration
-        .get_or_insert(models.compared.frames.until);
+    description.duration.get_or_insert(models.compared.frames.until);
     let head = format!(
         "# The scene {} without parts that change its motion by less than {:.1e} {}, by a3 {}.\n\n",
         in_a_line(&models.scene.name),

@@ -90,10 +90,7 @@ pub fn measure(
     Ok(Stability {
         limits: rows,
         predictable: motion.predictable,
-        feedback: scene
-            .model
-            .network()
-            .and_then(Linearized::baumgarte_frequency),
+        feedback: scene.model.network().and_then(Linearized::baumgarte_frequency),
         at_rest: hanging.map(|rest| rest.modes),
         at_start,
         complete: monitor.go_on(),

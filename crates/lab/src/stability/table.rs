@@ -107,15 +107,9 @@ pub fn report(found: &Stability) -> Report {
     if !names.is_empty() {
         meanings.push(("short", &why));
     }
-    let meanings = meanings
-        .iter()
-        .map(|(word, meaning)| vec![(*word).into(), (*meaning).into()]);
+    let meanings = meanings.iter().map(|(word, meaning)| vec![(*word).into(), (*meaning).into()]);
     let foot = table(&meanings.collect::<Vec<_>>());
-    Report {
-        head,
-        rows: cells,
-        foot,
-    }
+    Report { head, rows: cells, foot }
 }
 
 /// Creates the table of the largest stable step of each method with its reason, and of the largest
@@ -125,12 +119,7 @@ pub fn reasons(found: &Stability) -> Report {
     let modes = found.at_rest.as_deref().unwrap_or(&found.at_start);
     for row in &found.limits {
         let (stable, why) = reason(row, modes);
-        rows.push(vec![
-            row.method.name.into(),
-            stable,
-            row.accurate.map_or("-".into(), step),
-            why,
-        ]);
+        rows.push(vec![row.method.name.into(), stable, row.accurate.map_or("-".into(), step), why]);
     }
     let Report { head, .. } = report(found);
     let head = head.lines().next().unwrap_or_default();
@@ -150,11 +139,7 @@ fn reason(row: &MethodLimits, modes: &[Mode]) -> (String, String) {
     let at_rest = row.rest.map_or(f64::INFINITY, |limit| limit.step);
     let moving = row.bounded.filter(|seen| seen.held < at_rest);
     if let Some(seen) = moving {
-        let why = if seen.is_open() {
-            "none was tried"
-        } else {
-            "it blows up in motion"
-        };
+        let why = if seen.is_open() { "none was tried" } else { "it blows up in motion" };
         return (observation(row.bounded), why.into());
     }
     let Some(limit) = row.rest else {
@@ -244,11 +229,7 @@ pub fn json(rows: &[MethodLimits]) -> Result<String, Failure> {
 
 /// Converts a limit by the modes (s), which is infinite if every step is stable.
 fn step_of(seconds: f64) -> Step {
-    if seconds.is_finite() {
-        Step::Seconds(seconds)
-    } else {
-        Step::Any("any")
-    }
+    if seconds.is_finite() { Step::Seconds(seconds) } else { Step::Any("any") }
 }
 
 /// Converts an observed limit.

@@ -121,9 +121,7 @@ fn region(row: &MethodLimits, style: CurveStyle, modes: &[Mode], h: f64) -> Regi
     // The growth of a Runge-Kutta step depends on the eigenvalues only. That of a splitting method
     // also depends on how the damping is divided between drag and springs, which is taken from the
     // fastest mode.
-    let share = modes
-        .first()
-        .map_or(0.0, |m| m.damping / (m.drag + m.damping).max(1e-300));
+    let share = modes.first().map_or(0.0, |m| m.damping / (m.drag + m.damping).max(1e-300));
     let reads_velocity = modes.first().is_some_and(|m| m.reads_velocity);
     let radius = move |re: f64, im: f64| {
         // The fixed steps of BDF are those of TR-BDF2, but the chart shows its adaptive formulas.

@@ -48,11 +48,7 @@ pub fn begin(
     output::check(path, ENDINGS)?;
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     let sequence = Sequence::of(path);
-    let of_vtu = if ending == "vtu" {
-        Some(vtu::size(simulation)?)
-    } else {
-        None
-    };
+    let of_vtu = if ending == "vtu" { Some(vtu::size(simulation)?) } else { None };
     let is_single = ending == "obj" || of_vtu.is_some();
     let single = |files| obj::Frames {
         presentation: presentation.clone(),
@@ -76,12 +72,7 @@ pub fn begin(
     let several = all.since(simulation.time());
     let (particles, count) = (simulation.particles() as f64, several.count as f64);
     let (ending, first) = (ending.to_str(), several.first);
-    let job = Job {
-        path,
-        surface: &presentation.surface,
-        simulation,
-        frames: several,
-    };
+    let job = Job { path, surface: &presentation.surface, simulation, frames: several };
     let (size, largest) = match ending {
         Some("csv") => (csv::ROW_SIZE * particles * count, MAX_SIZES.0),
         Some("npz") => (npz::size(particles, several), MAX_SIZES.1),

@@ -22,10 +22,7 @@ pub struct Csv {
 impl Csv {
     /// Creates a file with a heading, for frames from number `first` on.
     pub fn new(path: &Path, first: usize) -> Result<Self, Failure> {
-        let mut csv = Self {
-            writer: csv::Writer::from_writer(Draft::new(path)?),
-            next: first,
-        };
+        let mut csv = Self { writer: csv::Writer::from_writer(Draft::new(path)?), next: first };
         csv.row(("frame", "time", "particle", "x", "y", "z", "vx", "vy", "vz"))?;
         Ok(csv)
     }
@@ -39,11 +36,7 @@ impl Csv {
 
 impl Export for Csv {
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        let (n, x, v) = (
-            simulation.particles(),
-            simulation.state(),
-            velocities(simulation)?,
-        );
+        let (n, x, v) = (simulation.particles(), simulation.state(), velocities(simulation)?);
         let time = short(simulation.time(), DIGITS);
         for i in 0..n {
             let of = |column: &[f64]| (column[i], column[n + i], column[2 * n + i]);

@@ -79,15 +79,10 @@ impl Geometry {
         let particles = simulation.particles();
         // Liquid that will flow in is pinned until then, and no wall. Some has flowed out again.
         let pins = network.into_iter().flat_map(Network::all_pins);
-        let flowing: BTreeSet<usize> = pins
-            .filter(|pin| pin.until.is_some())
-            .map(|pin| pin.particle)
-            .collect();
-        let has_left = |i: usize| {
-            network
-                .and_then(Network::fluid)
-                .is_some_and(|it| it.members().has_left(i))
-        };
+        let flowing: BTreeSet<usize> =
+            pins.filter(|pin| pin.until.is_some()).map(|pin| pin.particle).collect();
+        let has_left =
+            |i: usize| network.and_then(Network::fluid).is_some_and(|it| it.members().has_left(i));
         let is_wall = |i: usize| {
             network.is_some_and(|n| n.is_wall(i)) && (!flowing.contains(&i) || has_left(i))
         };
@@ -138,11 +133,7 @@ impl Geometry {
         }
         let unit = |n: [f64; 3]| {
             let length = n.iter().map(|c| c * c).sum::<f64>().sqrt();
-            if length > 1e-30 {
-                n.map(|c| (c / length) as f32)
-            } else {
-                [0.0, 1.0, 0.0]
-            }
+            if length > 1e-30 { n.map(|c| (c / length) as f32) } else { [0.0, 1.0, 0.0] }
         };
         sums.into_iter().map(unit).collect()
     }
@@ -177,11 +168,7 @@ pub fn positions(simulation: &Simulation) -> io::Result<Vec<[f32; 3]>> {
     let mut all = (0..n).map(position).collect::<io::Result<Vec<_>>>()?;
     if let Some(network) = simulation.model().network() {
         let rigid = tessellation::points(network, simulation.state());
-        all.extend(
-            rigid
-                .iter()
-                .map(|point| [point.x, point.y, point.z].map(|x| x as f32)),
-        );
+        all.extend(rigid.iter().map(|point| [point.x, point.y, point.z].map(|x| x as f32)));
     }
     Ok(all)
 }

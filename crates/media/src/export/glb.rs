@@ -103,11 +103,7 @@ impl Glb {
     /// Writes the positions and normals of a frame.
     fn write_frame(&mut self, simulation: &Simulation) -> io::Result<()> {
         let mut x = positions(simulation)?;
-        let mut normals = if self.has_surface() {
-            self.geometry.normals(&x)
-        } else {
-            vec![]
-        };
+        let mut normals = if self.has_surface() { self.geometry.normals(&x) } else { vec![] };
         if let Some([x0, normals0]) = &self.first {
             subtract(&mut x, x0);
             subtract(&mut normals, normals0);
@@ -195,12 +191,7 @@ impl Glb {
     /// Adds a mesh and a node for the surface of the fluid in each frame.
     fn add_liquids(&self, document: &mut Value) {
         let (mut nodes, mut meshes, mut roots) = (vec![], vec![], vec![]);
-        for (k, liquid) in self
-            .liquids
-            .iter()
-            .enumerate()
-            .filter(|(_, l)| !l.is_null())
-        {
+        for (k, liquid) in self.liquids.iter().enumerate().filter(|(_, l)| !l.is_null()) {
             roots.push(json!(nodes.len() + 1));
             let (name, size) = (format!("liquid {k}"), u8::from(k == 0));
             nodes.push(
@@ -216,11 +207,7 @@ impl Glb {
                 "baseColorFactor": [0.02, 0.24, 0.46, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.2,
             },
         });
-        for (key, more) in [
-            ("nodes", nodes),
-            ("meshes", meshes),
-            ("materials", vec![water]),
-        ] {
+        for (key, more) in [("nodes", nodes), ("meshes", meshes), ("materials", vec![water])] {
             if let Some(list) = document[key].as_array_mut() {
                 list.extend(more);
             }
@@ -272,8 +259,7 @@ impl Glb {
 
 impl Export for Glb {
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        self.write_frame(simulation)
-            .map_err(|e| self.draft.failure(&e))
+        self.write_frame(simulation).map_err(|e| self.draft.failure(&e))
     }
 
     fn finish(mut self: Box<Self>) -> Result<(), Failure> {

@@ -61,20 +61,12 @@ impl Serialize for MatrixRows<'_> {
 impl Json {
     /// Creates the output of one state to standard output.
     pub fn to_stdout() -> Self {
-        Self {
-            draft: None,
-            several: false,
-            frames: 0,
-        }
+        Self { draft: None, several: false, frames: 0 }
     }
 
     /// Creates a file with one state, or with an array of several.
     pub fn new(path: &Path, several: bool) -> Result<Self, Failure> {
-        Ok(Self {
-            draft: Some(Draft::new(path)?),
-            several,
-            frames: 0,
-        })
+        Ok(Self { draft: Some(Draft::new(path)?), several, frames: 0 })
     }
 }
 

@@ -73,23 +73,13 @@ impl Npz {
         } else {
             None
         };
-        Ok(Self {
-            draft,
-            time,
-            positions,
-            velocities,
-            masses,
-        })
+        Ok(Self { draft, time, positions, velocities, masses })
     }
 }
 
 impl Export for Npz {
     fn add(&mut self, simulation: &Simulation) -> Result<(), Failure> {
-        let (n, x, v) = (
-            simulation.particles(),
-            simulation.state(),
-            velocities(simulation)?,
-        );
+        let (n, x, v) = (simulation.particles(), simulation.state(), velocities(simulation)?);
         let rows = |columns: &[f64]| -> Vec<f64> {
             let row = |i| [0, n, 2 * n].map(|column| columns[column + i]);
             (0..n).flat_map(row).collect()
@@ -118,12 +108,8 @@ impl Array {
         let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({shape},), }}");
         let filled = (BEFORE_HEADER + header.len() + 1).next_multiple_of(ALIGNMENT);
         let width = filled - BEFORE_HEADER - 1;
-        let mut array = Self {
-            name,
-            file: BufWriter::new(file),
-            checksum: Hasher::new(),
-            bytes: 0,
-        };
+        let mut array =
+            Self { name, file: BufWriter::new(file), checksum: Hasher::new(), bytes: 0 };
         array.write(b"\x93NUMPY\x01\0")?;
         array.write(&(width as u16 + 1).to_le_bytes())?;
         array.write(format!("{header:width$}\n").as_bytes())?;
@@ -159,16 +145,8 @@ fn archive(file: &mut dyn Write, arrays: impl Iterator<Item = Array>) -> io::Res
         let [bytes, start] = [length(array.bytes)?, length(offset)?].map(u32::to_le_bytes);
         // What stands both before the array and in the directory. The flags, the method (stored)
         // and the time of day are 0, and so is the length of extras.
-        let shared = [
-            &version[..],
-            &[0; 6],
-            &date,
-            &checksum,
-            &bytes,
-            &bytes,
-            &length_of_name,
-            &[0; 2],
-        ];
+        let shared =
+            [&version[..], &[0; 6], &date, &checksum, &bytes, &bytes, &length_of_name, &[0; 2]];
         let (shared, name) = (&shared.concat()[..], name.as_bytes());
         let head = [b"PK\x03\x04", shared, name].concat();
         file.write_all(&head)?;
@@ -183,15 +161,7 @@ fn archive(file: &mut dyn Write, arrays: impl Iterator<Item = Array>) -> io::Res
     let count = count.to_le_bytes();
     let [size, start] = [length(directory.len())?, length(offset)?].map(u32::to_le_bytes);
     // First the numbers of this disk and of the directory's disk, last the length of a comment.
-    let end = [
-        b"PK\x05\x06",
-        &[0; 4][..],
-        &count,
-        &count,
-        &size,
-        &start,
-        &[0; 2],
-    ];
+    let end = [b"PK\x05\x06", &[0; 4][..], &count, &count, &size, &start, &[0; 2]];
     file.write_all(&end.concat())
 }
 

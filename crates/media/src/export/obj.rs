@@ -41,9 +41,7 @@ impl Export for Frames {
                 sequence.file(*next - 1)
             }
         };
-        output::write_with(&path, |file| {
-            (self.write)(file, &self.presentation.surface, simulation)
-        })
+        output::write_with(&path, |file| (self.write)(file, &self.presentation.surface, simulation))
     }
 
     fn finish(self: Box<Self>) -> Result<(), Failure> {

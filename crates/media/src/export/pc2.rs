@@ -86,10 +86,6 @@ impl Export for Pc2 {
         self.mesh.place()?;
         self.draft.place()?;
         let (cache, mesh) = &self.names;
-        terminal::say(&format!(
-            "{}: the mesh that {} moves\n",
-            mesh.display(),
-            cache.display()
-        ))
+        terminal::say(&format!("{}: the mesh that {} moves\n", mesh.display(), cache.display()))
     }
 }

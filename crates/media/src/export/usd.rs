@@ -89,12 +89,7 @@ pub fn size(simulation: &Simulation, frames: FrameTimes) -> f64 {
 impl Usd {
     /// Creates a file.
     pub fn new(job: Job) -> Result<Self, Failure> {
-        let Job {
-            path,
-            simulation,
-            frames,
-            ..
-        } = job;
+        let Job { path, simulation, frames, .. } = job;
         let draft = Draft::new(path)?;
         let geometry = Geometry::of(job.surface, job.simulation);
         let samples = |names: &[&'static str]| -> Result<Vec<_>, Failure> {
@@ -105,13 +100,7 @@ impl Usd {
             samples.collect()
         };
         let prim = |[kind, name]: [&'static str; 2], vertices, fixed, names: &[&'static str]| {
-            Ok::<_, Failure>(Prim {
-                kind,
-                name,
-                vertices,
-                fixed,
-                samples: samples(names)?,
-            })
+            Ok::<_, Failure>(Prim { kind, name, vertices, fixed, samples: samples(names)? })
         };
         let mut prims = vec![];
         if !geometry.triangles.is_empty() {
@@ -128,21 +117,11 @@ impl Usd {
             let fixed = format!(
                 "        uniform token type = \"linear\"\n        int[] curveVertexCounts = {counts}\n"
             );
-            prims.push(prim(
-                ["BasisCurves", "springs"],
-                vertices,
-                fixed,
-                &[POINTS, EXTENT],
-            )?);
+            prims.push(prim(["BasisCurves", "springs"], vertices, fixed, &[POINTS, EXTENT])?);
         }
         if !geometry.points.is_empty() {
             let (vertices, fixed) = (geometry.points.clone(), String::new());
-            prims.push(prim(
-                ["Points", "particles"],
-                vertices,
-                fixed,
-                &[POINTS, EXTENT],
-            )?);
+            prims.push(prim(["Points", "particles"], vertices, fixed, &[POINTS, EXTENT])?);
         }
         let network = simulation.model().network();
         let names = [POINTS, EXTENT, NORMALS, COUNTS, INDICES];
@@ -175,11 +154,7 @@ impl Usd {
                 prim.vertices.iter().map(|i| all[*i as usize]).collect()
             };
             let (points, normals) = (of(&all), of(&normals));
-            let texts = [
-                vectors(&points),
-                vectors(&extent(&points)),
-                vectors(&normals),
-            ];
+            let texts = [vectors(&points), vectors(&extent(&points)), vectors(&normals)];
             prim.add(self.next, texts)?;
         }
         if let Some(prim) = &mut self.liquid {
@@ -214,11 +189,7 @@ impl Usd {
              def Xform \"scene\" (\n    kind = \"component\"\n)\n{{\n"
         )?;
         for prim in self.prims.iter_mut().chain(&mut self.liquid) {
-            write!(
-                draft,
-                "    def {} \"{}\"\n    {{\n{}",
-                prim.kind, prim.name, prim.fixed
-            )?;
+            write!(draft, "    def {} \"{}\"\n    {{\n{}", prim.kind, prim.name, prim.fixed)?;
             if prim.kind != "Mesh" {
                 let width = self.width;
                 write!(

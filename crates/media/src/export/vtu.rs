@@ -58,40 +58,19 @@ pub fn write(file: &mut dyn Write, _surface: &Surface, simulation: &Simulation) 
     let tensors = stresses.clone().map(|s| <[f64; 9]>::try_from(s.as_slice()));
     let tensors: Vec<_> = tensors.map(Result::unwrap_or_default).collect();
     let mises: Vec<_> = stresses.map(|s| [von_mises(s)]).collect();
-    writeln!(
-        file,
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\">"
-    )?;
+    writeln!(file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\">")?;
     writeln!(file, "<UnstructuredGrid>\n<FieldData>")?;
     let time = [[simulation.time()]];
-    array(
-        file,
-        "Float64",
-        "Name=\"TimeValue\" NumberOfTuples=\"1\"",
-        &time,
-    )?;
+    array(file, "Float64", "Name=\"TimeValue\" NumberOfTuples=\"1\"", &time)?;
     writeln!(file, "</FieldData>")?;
     let count = cells.len();
-    writeln!(
-        file,
-        "<Piece NumberOfPoints=\"{n}\" NumberOfCells=\"{count}\">\n<PointData>"
-    )?;
+    writeln!(file, "<Piece NumberOfPoints=\"{n}\" NumberOfCells=\"{count}\">\n<PointData>")?;
     let vector = "NumberOfComponents=\"3\"";
     let velocities = rows(&simulation.velocities());
-    array(
-        file,
-        "Float64",
-        &format!("Name=\"velocity\" {vector}"),
-        &velocities,
-    )?;
+    array(file, "Float64", &format!("Name=\"velocity\" {vector}"), &velocities)?;
     writeln!(file, "</PointData>\n<CellData>")?;
     array(file, "Float64", "Name=\"von_mises_stress\"", &mises)?;
-    array(
-        file,
-        "Float64",
-        "Name=\"stress\" NumberOfComponents=\"9\"",
-        &tensors,
-    )?;
+    array(file, "Float64", "Name=\"stress\" NumberOfComponents=\"9\"", &tensors)?;
     writeln!(file, "</CellData>\n<Points>")?;
     array(file, "Float64", vector, &rows(simulation.state()))?;
     writeln!(file, "</Points>\n<Cells>")?;

@@ -56,10 +56,7 @@ pub fn begin(options: FilmOptions, until: f64) -> Result<Option<TimedFilm>, Fail
                 "an MP4 cannot be transparent: use a .gif, a .png or a sequence such as film-####.png",
             ));
         }
-        return Ok(Some((
-            frames(rate)?,
-            Box::new(mp4::Mp4::new(path, size, rate)?),
-        )));
+        return Ok(Some((frames(rate)?, Box::new(mp4::Mp4::new(path, size, rate)?))));
     }
     if let Some(sequence) = Sequence::of(path) {
         let frames = frames(rate)?;
@@ -107,11 +104,7 @@ pub struct Pictures {
 impl Pictures {
     /// Creates a film of pictures of this size (px).
     pub fn new(sequence: Sequence, size: (u32, u32)) -> Self {
-        Self {
-            sequence,
-            size,
-            count: 0,
-        }
+        Self { sequence, size, count: 0 }
     }
 }
 

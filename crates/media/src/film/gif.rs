@@ -49,25 +49,14 @@ impl Gif {
     ) -> Result<Self, Failure> {
         let side = |side| {
             u16::try_from(side).map_err(|_| {
-                Failure::usage(format!(
-                    "the sides of a GIF must be at most {} pixels",
-                    u16::MAX
-                ))
+                Failure::usage(format!("the sides of a GIF must be at most {} pixels", u16::MAX))
             })
         };
         let (across, down) = (side(width)?, side(height)?);
         let encoder = Encoder::new(Draft::new(path)?, across, down, &[]);
         let mut encoder = encoder.map_err(|e| not_written(path, &cause(e)))?;
-        encoder
-            .set_repeat(Repeat::Infinite)
-            .map_err(|e| failure(&encoder, e))?;
-        Ok(Self {
-            encoder,
-            size: (width, height),
-            delay: delay as u16,
-            shown: None,
-            transparent,
-        })
+        encoder.set_repeat(Repeat::Infinite).map_err(|e| failure(&encoder, e))?;
+        Ok(Self { encoder, size: (width, height), delay: delay as u16, shown: None, transparent })
     }
 
     /// Returns whether pixel k is part of the next frame: in a transparent film if it is opaque, in
@@ -85,26 +74,17 @@ impl Film for Gif {
     fn add(&mut self, pixels: &[u8]) -> Result<(), Failure> {
         let width = self.size.0 as usize;
         let color = |k: usize| [pixels[4 * k], pixels[4 * k + 1], pixels[4 * k + 2]];
-        let new: Vec<bool> = pixels
-            .chunks_exact(4)
-            .enumerate()
-            .map(|(k, pixel)| self.is_new(k, pixel))
-            .collect();
+        let new: Vec<bool> =
+            pixels.chunks_exact(4).enumerate().map(|(k, pixel)| self.is_new(k, pixel)).collect();
         let sent = || (0..new.len()).filter(|&k| new[k]);
         let palette = Palette::of(sent().map(color), 255);
         // The index after the last colour stands for transparent pixels.
         let none = palette.colors.len() as u8;
         let index = |k: usize| {
-            if new[k] {
-                palette.index(color(k))
-            } else {
-                none
-            }
+            if new[k] { palette.index(color(k)) } else { none }
         };
         let (columns, rows) = bounds(sent(), width);
-        let part = rows
-            .clone()
-            .flat_map(|y| columns.clone().map(move |x| y * width + x));
+        let part = rows.clone().flat_map(|y| columns.clone().map(move |x| y * width + x));
         let mut frame = Frame {
             delay: self.delay,
             left: columns.start as u16,
@@ -125,9 +105,7 @@ impl Film for Gif {
         for k in sent() {
             shown[k] = palette.colors[usize::from(palette.index(color(k)))];
         }
-        self.encoder
-            .write_frame(&frame)
-            .map_err(|e| failure(&self.encoder, e))
+        self.encoder.write_frame(&frame).map_err(|e| failure(&self.encoder, e))
     }
 
     fn finish(self: Box<Self>) -> Result<(), Failure> {
@@ -211,10 +189,7 @@ impl Palette {
             let (low, high) = boxes.swap_remove(widest).halves();
             // Because of rounding, the mean may be at an end of the box.
             if low.is_empty() || high.is_empty() {
-                boxes.push(ColorBox {
-                    spread: 0.0,
-                    ..ColorBox::of([low, high].concat())
-                });
+                boxes.push(ColorBox { spread: 0.0, ..ColorBox::of([low, high].concat()) });
                 continue;
             }
             boxes.extend([ColorBox::of(low), ColorBox::of(high)]);
@@ -225,13 +200,8 @@ impl Palette {
                 index[cell.number] = k as u8;
             }
         }
-        let colors = boxes
-            .iter()
-            .map(|group| group.mean.map(|c| c.round() as u8));
-        Self {
-            colors: colors.collect(),
-            index,
-        }
+        let colors = boxes.iter().map(|group| group.mean.map(|c| c.round() as u8));
+        Self { colors: colors.collect(), index }
     }
 
     /// Returns the index of the colour that replaces `color`, which must be one of those that the
@@ -250,20 +220,13 @@ impl ColorBox {
         let mean = [0, 1, 2].map(|axis| sum(&|cell| cell.mean[axis]) / count);
         let squares = [0, 1, 2].map(|axis| sum(&|cell| (cell.mean[axis] - mean[axis]).powi(2)));
         let axis = (0..3).fold(0, |a, b| if squares[b] > squares[a] { b } else { a });
-        Self {
-            mean,
-            axis,
-            spread: if cells.len() > 1 { squares[axis] } else { 0.0 },
-            cells,
-        }
+        Self { mean, axis, spread: if cells.len() > 1 { squares[axis] } else { 0.0 }, cells }
     }
 
     /// Splits the cells into those below the mean on the axis of the box, and the others.
     fn halves(self) -> (Vec<Cell>, Vec<Cell>) {
         let (axis, mean) = (self.axis, self.mean);
-        self.cells
-            .into_iter()
-            .partition(|cell| cell.mean[axis] < mean[axis])
+        self.cells.into_iter().partition(|cell| cell.mean[axis] < mean[axis])
     }
 }
 
@@ -276,20 +239,14 @@ fn cells(colors: impl Iterator<Item = [u8; 3]>) -> Vec<Cell> {
         .map(|group| {
             let count = group.len() as f64;
             let sum = |axis: usize| group.iter().map(|(_, c)| f64::from(c[axis])).sum::<f64>();
-            Cell {
-                number: group[0].0,
-                count,
-                mean: [0, 1, 2].map(|axis| sum(axis) / count),
-            }
+            Cell { number: group[0].0, count, mean: [0, 1, 2].map(|axis| sum(axis) / count) }
         })
         .collect()
 }
 
 /// Returns the number of the cell of a colour.
 fn cell_of(color: [u8; 3]) -> usize {
-    color.iter().fold(0, |number, &c| {
-        number << BITS | usize::from(c) >> (8 - BITS)
-    })
+    color.iter().fold(0, |number, &c| number << BITS | usize::from(c) >> (8 - BITS))
 }
 
 #[cfg(test)]
@@ -319,15 +276,7 @@ mod tests {
         let mut decoder = options.read_info(file).ok().unwrap();
         let mut next = || decoder.read_next_frame().ok().flatten().cloned();
         let places: Vec<_> = std::iter::from_fn(&mut next)
-            .map(|frame| {
-                (
-                    frame.left,
-                    frame.top,
-                    frame.width,
-                    frame.height,
-                    frame.buffer.to_vec(),
-                )
-            })
+            .map(|frame| (frame.left, frame.top, frame.width, frame.height, frame.buffer.to_vec()))
             .collect();
         let (blue, none) = ([0, 0, 255, 255], [0; 4]);
         let part = [blue, none, none, none, none, blue].concat();
@@ -339,13 +288,7 @@ mod tests {
 
     #[test]
     fn few_colors_are_kept_as_they_are() {
-        let colors = [
-            [0, 0, 0],
-            [255, 255, 255],
-            [200, 30, 40],
-            [90, 90, 90],
-            [90, 90, 96],
-        ];
+        let colors = [[0, 0, 0], [255, 255, 255], [200, 30, 40], [90, 90, 90], [90, 90, 96]];
         let palette = Palette::of(colors.iter().chain(&colors[1..3]).copied(), 255);
         assert_eq!(palette.colors.len(), colors.len());
         for color in colors {
@@ -364,10 +307,7 @@ mod tests {
             assert!(palette.colors.len() <= most);
             for color in ramp(1) {
                 let shown = palette.colors[usize::from(palette.index(color))];
-                assert!(
-                    shown[0].abs_diff(color[0]) <= worst,
-                    "{most}: {color:?} as {shown:?}"
-                );
+                assert!(shown[0].abs_diff(color[0]) <= worst, "{most}: {color:?} as {shown:?}");
             }
         }
     }

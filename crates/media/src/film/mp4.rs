@@ -42,9 +42,7 @@ impl Mp4 {
             )));
         };
         // The protocol is named, because a file name may begin with - or contain a colon.
-        let target = [OsString::from("file:"), beside.into()]
-            .into_iter()
-            .collect::<OsString>();
+        let target = [OsString::from("file:"), beside.into()].into_iter().collect::<OsString>();
         let log = tempfile::tempfile().map_err(Failure::run)?;
         let mut command = Command::new("ffmpeg");
         command
@@ -72,12 +70,7 @@ impl Mp4 {
             ),
             _ => Failure::run(format!("ffmpeg could not be started: {}", terminal::reason(&e))),
         })?;
-        Ok(Self {
-            draft: Some(draft),
-            ffmpeg,
-            running: Some(running),
-            log,
-        })
+        Ok(Self { draft: Some(draft), ffmpeg, running: Some(running), log })
     }
 
     /// Waits until `ffmpeg` has ended, and removes its registration for clean-up.
@@ -107,10 +100,7 @@ impl Mp4 {
             (None, Ok(status)) => status.to_string(),
             (None, Err(e)) => e.to_string(),
         };
-        Failure::run(format!(
-            "{}: could not be written: ffmpeg failed: {why}",
-            path.display()
-        ))
+        Failure::run(format!("{}: could not be written: ffmpeg failed: {why}", path.display()))
     }
 }
 

@@ -62,11 +62,7 @@ pub fn shoot(
     } else {
         interrupt::write_on();
         film.finish()?;
-        format!(
-            "{} has the first {shot} of {} frames",
-            path.display(),
-            frames.count
-        )
+        format!("{} has the first {shot} of {} frames", path.display(), frames.count)
     };
     match end {
         Ok(true) => {

@@ -34,16 +34,8 @@ impl Scale {
         if !fits && largest.is_finite() {
             let rounds = if self.logarithmic { &[1.0, 10.0] } else { MANY };
             // A logarithmic scale shows errors of any size.
-            let nothing = if self.logarithmic {
-                0.0
-            } else {
-                MAX_ROUNDING_ERROR
-            };
-            self.fitting = if largest > nothing {
-                round_up(largest, rounds)
-            } else {
-                0.0
-            };
+            let nothing = if self.logarithmic { 0.0 } else { MAX_ROUNDING_ERROR };
+            self.fitting = if largest > nothing { round_up(largest, rounds) } else { 0.0 };
         }
     }
 
@@ -60,11 +52,7 @@ impl Scale {
         } else if value > 0.0 && value < self.end() {
             (value / self.end()) as f32
         } else {
-            let least = if self.end() > 0.0 {
-                0.0
-            } else {
-                MAX_ROUNDING_ERROR
-            };
+            let least = if self.end() > 0.0 { 0.0 } else { MAX_ROUNDING_ERROR };
             f32::from(value.is_nan() || value > least)
         }
     }
@@ -97,10 +85,8 @@ impl Colouring {
 
     /// Resets the scale, for another scene.
     pub fn forget(&mut self) {
-        self.scale = Scale {
-            logarithmic: self.quantity == Some(Quantity::Error),
-            ..Scale::default()
-        };
+        self.scale =
+            Scale { logarithmic: self.quantity == Some(Quantity::Error), ..Scale::default() };
     }
 
     /// Returns the largest distance of a particle from its place in the reference (m); 0 without a
@@ -176,10 +162,7 @@ mod tests {
     #[test]
     fn the_scale_follows_what_is_measured_unless_it_is_fixed() {
         let mut scale = Scale::default();
-        assert_eq!(
-            (scale.end(), scale.share(0.0), scale.share(1.0)),
-            (0.0, 0.0, 1.0)
-        );
+        assert_eq!((scale.end(), scale.share(0.0), scale.share(1.0)), (0.0, 0.0, 1.0));
         scale.follow(1e-12);
         assert_eq!(scale.share(1e-12), 0.0, "the rounding of nothing");
         for (largest, end) in [(1.3, 1.5), (1.4, 1.5), (0.4, 1.5), (0.29, 0.3), (8.5, 10.0)] {

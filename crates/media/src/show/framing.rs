@@ -29,10 +29,8 @@ impl Bounds {
     /// Returns the box around particles and bodies of some runs. Liquid that has flowed out is not
     /// looked for.
     fn of<'a>(runs: impl IntoIterator<Item = &'a Simulation>) -> Self {
-        let mut bounds = Self {
-            low: Vector3::repeat(f64::INFINITY),
-            high: Vector3::repeat(f64::NEG_INFINITY),
-        };
+        let mut bounds =
+            Self { low: Vector3::repeat(f64::INFINITY), high: Vector3::repeat(f64::NEG_INFINITY) };
         for run in runs {
             let network = run.model().network();
             let fluid = network.and_then(Network::fluid);
@@ -65,9 +63,8 @@ pub fn see_all<'a>(camera: &mut Camera, runs: impl Iterator<Item = &'a Simulatio
     let bounds = Bounds::of(runs.clone());
     // Particles are drawn as balls: those at the edge of the picture need room, too.
     let radius = bounds.radius() + 0.1 * f64::from(camera.unit());
-    let (middle, radius) = runs.fold((bounds.middle(), radius), |ball, run| {
-        surroundings(run.model(), run.time(), ball)
-    });
+    let (middle, radius) = runs
+        .fold((bounds.middle(), radius), |ball, run| surroundings(run.model(), run.time(), ball));
     camera.see(to_f32(middle), radius as f32);
 }
 
@@ -83,10 +80,7 @@ pub fn see_motion(presentation: &mut Arc<Presentation>, mut run: Simulation, unt
             break;
         }
         let now = Bounds::of([&run]);
-        let wider = Bounds {
-            low: seen.low.inf(&now.low),
-            high: seen.high.sup(&now.high),
-        };
+        let wider = Bounds { low: seen.low.inf(&now.low), high: seen.high.sup(&now.high) };
         // Nothing fits where there are no particles, whose box is empty.
         let fits = wider.radius() < MOST * radius;
         if !fits {
@@ -102,8 +96,6 @@ pub fn see_motion(presentation: &mut Arc<Presentation>, mut run: Simulation, unt
     let (middle, radius) = surroundings(&scene.model, 0.0, (seen.middle(), radius));
     let mut seeing = camera(presentation);
     seeing.see(to_f32(middle), radius as f32);
-    Arc::make_mut(presentation).viewpoint = Viewpoint {
-        eye: seeing.eye().coords.cast(),
-        target: seeing.target().coords.cast(),
-    };
+    Arc::make_mut(presentation).viewpoint =
+        Viewpoint { eye: seeing.eye().coords.cast(), target: seeing.target().coords.cast() };
 }

@@ -16,10 +16,7 @@ const STANDING_DEPTH: f64 = 0.2;
 pub fn below(scene: &Scene, network: &Network, presentation: &Presentation) -> Option<Floor> {
     network.gravity().filter(|g| g.y < 0.0)?;
     let n = scene.model.particles();
-    let lowest = scene.state[n..2 * n]
-        .iter()
-        .copied()
-        .fold(f64::INFINITY, f64::min);
+    let lowest = scene.state[n..2 * n].iter().copied().fold(f64::INFINITY, f64::min);
     let foot = obstacles(network).fold(f64::INFINITY, f64::min);
     let Viewpoint { eye, target } = presentation.viewpoint;
     let below = |share: f64| target.y - share * (eye - target).norm();
@@ -32,10 +29,7 @@ pub fn below(scene: &Scene, network: &Network, presentation: &Presentation) -> O
     } else {
         lowest.min(foot).min(below(DEPTH))
     };
-    height.is_finite().then_some(Floor {
-        height: height as f32,
-        solid: false,
-    })
+    height.is_finite().then_some(Floor { height: height as f32, solid: false })
 }
 
 /// Returns the heights of the lowest points of the obstacles at the start (m).
@@ -47,9 +41,7 @@ fn obstacles(network: &Network) -> impl Iterator<Item = f64> {
             Shape::Capsule { ends, radius } => (ends.to_vec(), *radius),
             shape => (shape.simplices().points.clone(), 0.0),
         };
-        points
-            .into_iter()
-            .map(move |point| pose.of(point).position.y - below)
+        points.into_iter().map(move |point| pose.of(point).position.y - below)
     })
 }
 

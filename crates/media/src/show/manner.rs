@@ -36,9 +36,9 @@ pub fn style(wireframe: bool, springs: bool) -> Style {
 /// Checks that the scene has the particle whose springs are requested, if one is.
 pub fn check_particle(simulation: &Simulation, particle: Option<usize>) -> Result<(), Failure> {
     match (particle, simulation.model().network()) {
-        (Some(i), Some(network)) => network
-            .check_particle(i)
-            .map_err(|e| Failure::usage(format!("--springs-of: {e}"))),
+        (Some(i), Some(network)) => {
+            network.check_particle(i).map_err(|e| Failure::usage(format!("--springs-of: {e}")))
+        }
         (Some(_), None) => Err(Failure::usage("--springs-of: this scene has no springs")),
         (None, _) => Ok(()),
     }

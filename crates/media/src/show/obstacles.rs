@@ -16,11 +16,7 @@ use crate::surfaces::tessellation::parts;
 /// where only particles stay out of obstacles, so that the flat triangles between them stay outside
 /// too, and the full radius where surfaces touch.
 pub fn drawn_radius(network: &Network) -> f32 {
-    if network.contact_layer().is_some() {
-        1.0
-    } else {
-        0.965
-    }
+    if network.contact_layer().is_some() { 1.0 } else { 0.965 }
 }
 
 /// Draws the obstacles at their places at `time` (s), and returns the height of the floor (m) if
@@ -55,10 +51,7 @@ pub struct Paint {
 impl Paint {
     /// Creates the paint of a single colour.
     pub fn plain(color: [f32; 4]) -> Self {
-        Self {
-            color,
-            values: vec![],
-        }
+        Self { color, values: vec![] }
     }
 
     /// Returns the colour of the first point.
@@ -90,11 +83,9 @@ pub fn draw_shape(
     let place = pose.place.position;
     let inside = |radius: f64| share * radius as f32;
     match shape {
-        &Shape::Sphere { radius } => balls.push(Ball {
-            center: to_f32(place),
-            radius: inside(radius),
-            color: paint.first(),
-        }),
+        &Shape::Sphere { radius } => {
+            balls.push(Ball { center: to_f32(place), radius: inside(radius), color: paint.first() })
+        }
         &Shape::Box { half_extents, axes } => {
             let least = half_extents.min();
             let gap = if share < 1.0 { 0.02 * least } else { 0.0 };
@@ -108,21 +99,14 @@ pub fn draw_shape(
                 values: paint.corners([0, 1, 2, 3, 4, 5, 6, 7]),
             });
         }
-        &Shape::Capsule {
-            ends: [a, b],
-            radius,
-        } => {
+        &Shape::Capsule { ends: [a, b], radius } => {
             let along = pose.outwards(b - a);
             let side = perpendicular(along);
             let y = along.try_normalize(0.0).unwrap_or(Vector3::y());
             solids.push(Solid {
                 center: to_f32(pose.of(0.5 * (a + b)).position),
                 radius: inside(radius),
-                axes: [
-                    axis(side, 0.0),
-                    axis(y, 0.5 * along.norm()),
-                    axis(side.cross(&y), 0.0),
-                ],
+                axes: [axis(side, 0.0), axis(y, 0.5 * along.norm()), axis(side.cross(&y), 0.0)],
                 color: paint.color,
                 values: paint.corners([0, 0, 1, 1, 0, 0, 1, 1]),
             });
@@ -147,15 +131,10 @@ pub fn add_points(network: &Network, time: f64, points: &mut Vec<[f32; 4]>) {
         let pose = obstacle.at(time);
         let [low, high] = extent(mesh);
         let inwards = (1.0 - share) * 0.5 * (high - low).min();
-        points.extend(
-            mesh.points()
-                .iter()
-                .zip(mesh.normals())
-                .map(|(point, normal)| {
-                    let [x, y, z] = to_f32(pose.of(point - normal * inwards).position);
-                    [x, y, z, STEEL_LOOK as f32]
-                }),
-        );
+        points.extend(mesh.points().iter().zip(mesh.normals()).map(|(point, normal)| {
+            let [x, y, z] = to_f32(pose.of(point - normal * inwards).position);
+            [x, y, z, STEEL_LOOK as f32]
+        }));
     }
 }
 
@@ -286,10 +265,7 @@ pub fn draw_bodies(
         let paint = Paint {
             color: BODIES[k % BODIES.len()],
             // Values count only if each point has one.
-            values: points
-                .map(|i| colouring.vector(i))
-                .collect::<Option<_>>()
-                .unwrap_or_default(),
+            values: points.map(|i| colouring.vector(i)).collect::<Option<_>>().unwrap_or_default(),
         };
         draw_shape(&part.shape, &pose, 1.0, &paint, balls, solids);
         if let Shape::Sphere { radius } = part.shape {

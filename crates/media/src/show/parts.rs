@@ -163,9 +163,7 @@ pub fn topology(surface: &Surface, simulation: &Simulation) -> Topology {
     for (mesh, _) in network.into_iter().flat_map(obstacles::meshes) {
         let first = topology.points as u32;
         let triangles = mesh.triangles().iter();
-        topology
-            .triangles
-            .extend(triangles.map(|t| t.map(|i| first + i)));
+        topology.triangles.extend(triangles.map(|t| t.map(|i| first + i)));
         let edges = mesh.edges().iter();
         topology.wires.extend(edges.map(|e| e.map(|i| first + i)));
         topology.points += mesh.points().len();
@@ -214,10 +212,7 @@ fn places_of_closed(
 fn add_edges(topology: &mut Topology, surface: &Surface) {
     let of = |i: u32| surface.bodies.partition_point(|end| *end <= i as usize);
     let mut wired = vec![false; surface.bodies.len() + 1];
-    topology
-        .wires
-        .iter()
-        .for_each(|[i, _]| wired[of(*i)] = true);
+    topology.wires.iter().for_each(|[i, _]| wired[of(*i)] = true);
     let triangles = topology.triangles.iter();
     let bare = triangles.filter(|[a, _, _]| !wired[of(*a)]);
     let mut edges: Vec<_> = bare
@@ -251,11 +246,7 @@ fn add_springs(
 
 /// Returns a spring or an edge with a colour and width (points).
 fn line_of(ends: [u32; 2], ([r, g, b, _], width): ([f32; 4], f32)) -> Drawn {
-    Drawn {
-        ends,
-        width,
-        color: [r, g, b],
-    }
+    Drawn { ends, width, color: [r, g, b] }
 }
 
 /// Cosine of the largest angle between the normals of two triangles that are smooth at their common
@@ -277,10 +268,7 @@ pub fn split(topology: &mut Topology, places: &[Option<Vector3<f64>>]) {
         .collect();
     corners.sort_by_key(|(t, k)| topology.triangles[*t][*k]);
     let of = |(t, k): &(usize, usize)| topology.triangles[*t][*k];
-    let around: Vec<Vec<_>> = corners
-        .chunk_by(|a, b| of(a) == of(b))
-        .map(<[_]>::to_vec)
-        .collect();
+    let around: Vec<Vec<_>> = corners.chunk_by(|a, b| of(a) == of(b)).map(<[_]>::to_vec).collect();
     for corners in around {
         let smooth = |a: usize, b: usize| match (normals[a], normals[b]) {
             (Some(a), Some(b)) => a.dot(&b) > MIN_COSINE,
@@ -358,9 +346,7 @@ mod tests {
         let network = whole.model().network().unwrap();
         let pairs = |i| network.springs_of(i).map(|s| [s.i.min(s.j), s.i.max(s.j)]);
         description.torn = pairs(20).chain(pairs(70).skip(1)).collect();
-        let setup = description
-            .build(None, &mut |_| Err("no file".into()))
-            .unwrap();
+        let setup = description.build(None, &mut |_| Err("no file".into())).unwrap();
         let (method, control) = (integrators::find("t").unwrap(), Control::Step(0.001));
         let simulation = Simulation::new(setup.scene, method, control).unwrap();
         let mut parts = Parts::default();
@@ -375,11 +361,9 @@ mod tests {
 
     #[test]
     fn all_springs_are_there_by_kind() {
-        for (scene, kinds) in [
-            ("cloth", [720, 722, 760].as_slice()),
-            ("jelly", &[]),
-            ("cantilever", &[0, 0, 0]),
-        ] {
+        for (scene, kinds) in
+            [("cloth", [720, 722, 760].as_slice()), ("jelly", &[]), ("cantilever", &[0, 0, 0])]
+        {
             let (simulation, presentation) = run(scene);
             let Topology { springs, wires, .. } = topology(&presentation.surface, &simulation);
             let count = |kind: SpringKind| {
@@ -399,10 +383,7 @@ mod tests {
             if !kinds.is_empty() {
                 assert_eq!(counts, kinds, "{scene}");
             }
-            assert!(
-                springs.is_sorted_by_key(|s| s.width != 2.0 * 1.6),
-                "{scene}"
-            );
+            assert!(springs.is_sorted_by_key(|s| s.width != 2.0 * 1.6), "{scene}");
         }
     }
 
@@ -416,11 +397,7 @@ mod tests {
             assert_eq!(splits.len(), 3 * 8 + 2 * along_edges, "{scene}");
         }
         let (simulation, presentation) = run("cloth");
-        assert!(
-            topology(&presentation.surface, &simulation)
-                .splits
-                .is_empty()
-        );
+        assert!(topology(&presentation.surface, &simulation).splits.is_empty());
     }
 
     /// Two squares of two triangles beside a tetrahedron, and a particle that belongs to none.
@@ -436,22 +413,12 @@ mod tests {
             [8, 9, 10],
             [10, 9, 11],
         ];
-        let surface = Surface {
-            triangles,
-            bodies: vec![4, 8, 12],
-        };
+        let surface = Surface { triangles, bodies: vec![4, 8, 12] };
         assert_eq!(looks(&surface), [0.0, 5.0, 2.0]);
         let spring = |i, j| Spring {
             i,
             j,
-            ..run("chain")
-                .0
-                .model()
-                .network()
-                .unwrap()
-                .springs()
-                .next()
-                .unwrap()
+            ..run("chain").0.model().network().unwrap().springs().next().unwrap()
         };
         let bodies = [(0, 3), (3, 4), (4, 7), (11, 12), (8, 11)];
         let found = bodies.map(|(i, j)| body(&surface, &spring(i, j)));
@@ -485,10 +452,7 @@ mod tests {
         assert_eq!(flat.splits, [0; 0]);
         let steep = roof(1.0);
         assert_eq!(steep.splits, [2, 2, 3, 3]);
-        assert_eq!(
-            steep.triangles,
-            [[0, 1, 6], [6, 1, 8], [7, 9, 4], [4, 9, 5]]
-        );
+        assert_eq!(steep.triangles, [[0, 1, 6], [6, 1, 8], [7, 9, 4], [4, 9, 5]]);
     }
 
     #[test]

@@ -177,10 +177,7 @@ impl Show {
         let (y, z) = rest.split_at(n);
         self.points.clear();
         self.points.extend(
-            x.iter()
-                .zip(y)
-                .zip(z)
-                .map(|((x, y), z)| [*x as f32, *y as f32, *z as f32, 0.0]),
+            x.iter().zip(y).zip(z).map(|((x, y), z)| [*x as f32, *y as f32, *z as f32, 0.0]),
         );
         self.parts.update(&self.presentation, simulation);
         self.parts.paint(&mut self.points);
@@ -199,10 +196,7 @@ impl Show {
         if let Some(network) = simulation.model().network() {
             let time = simulation.time();
             let floor = obstacles::draw(network, time, &mut self.balls, &mut self.solids);
-            let solid = |height| Floor {
-                height,
-                solid: true,
-            };
+            let solid = |height| Floor { height, solid: true };
             let ground = || ground::below(simulation.scene(), network, &self.presentation);
             self.floor = floor.map(solid).or_else(ground);
             obstacles::add_points(network, time, &mut self.points);
@@ -223,9 +217,8 @@ impl Show {
         }
         if let Some(i) = simulation.grabbed() {
             self.ball(i, 0.055, AMBER);
-            if let Some((line, ball)) = self
-                .hand
-                .and_then(|hand| pull(simulation, i, hand, self.unit))
+            if let Some((line, ball)) =
+                self.hand.and_then(|hand| pull(simulation, i, hand, self.unit))
             {
                 self.lines.push(line);
                 self.balls.push(ball);
@@ -262,11 +255,7 @@ impl Show {
 
     /// Draws a ball at particle i. Its radius is in units of length of the scene.
     fn ball(&mut self, i: usize, radius: f32, color: [f32; 4]) {
-        self.balls.push(Ball {
-            center: self.at(i),
-            radius: radius * self.unit,
-            color,
-        });
+        self.balls.push(Ball { center: self.at(i), radius: radius * self.unit, color });
     }
 
     /// Draws springs and particles that have no surface: as coils and balls, or as lines and small
@@ -304,8 +293,7 @@ impl Show {
                 let end = if k < half { spring.i } else { spring.j };
                 let color = self.colouring.of(end, own);
                 let width = 1.5 * width;
-                self.lines
-                    .push(Line::new(part[0], part[1], width, color).with_shadow());
+                self.lines.push(Line::new(part[0], part[1], width, color).with_shadow());
             }
         }
         if let Some(network) = network {
@@ -313,8 +301,7 @@ impl Show {
             let at = |i: usize| [points[i][0], points[i][1], points[i][2]];
             let pose = |k: usize| network.pose(k, simulation.state());
             let unit = f64::from(self.unit);
-            self.lines
-                .extend(wires::lines(network, at, pose, unit, STEEL));
+            self.lines.extend(wires::lines(network, at, pose, unit, STEEL));
         }
         let fluid = network.and_then(Network::fluid);
         for i in self.parts.single().to_vec() {
@@ -329,11 +316,7 @@ impl Show {
                 (false, false) => (0.085, RED),
                 (false, true) => (0.028, RED),
             };
-            let color = if pinned {
-                color
-            } else {
-                self.colouring.of(i, color)
-            };
+            let color = if pinned { color } else { self.colouring.of(i, color) };
             self.ball(i, radius, color);
         }
     }
@@ -443,18 +426,12 @@ impl Liquid {
             value: corner.value,
             normal: corner.normal,
         });
-        Self {
-            corners: corners.collect(),
-            triangles: surface.triangles,
-        }
+        Self { corners: corners.collect(), triangles: surface.triangles }
     }
 
     /// Returns the surface in the form of the renderer.
     pub fn as_drawn(&self) -> a3_render::Liquid<'_> {
-        a3_render::Liquid {
-            corners: &self.corners,
-            triangles: &self.triangles,
-        }
+        a3_render::Liquid { corners: &self.corners, triangles: &self.triangles }
     }
 }
 
@@ -521,13 +498,10 @@ impl Trail {
     pub fn lines(&self, time: f64, [r, g, b, _]: [f32; 4]) -> impl Iterator<Item = Line> {
         let n = self.0.partition_point(|(then, _)| *then <= time);
         let points = move || self.0.iter().take(n).map(|(_, point)| *point);
-        points()
-            .zip(points().skip(1))
-            .enumerate()
-            .map(move |(k, (from, to))| {
-                let age = 1.0 - (k + 1) as f32 / n as f32;
-                Line::new(from, to, WIDTH, [r, g, b, 0.12 + 0.8 * (1.0 - age)])
-            })
+        points().zip(points().skip(1)).enumerate().map(move |(k, (from, to))| {
+            let age = 1.0 - (k + 1) as f32 / n as f32;
+            Line::new(from, to, WIDTH, [r, g, b, 0.12 + 0.8 * (1.0 - age)])
+        })
     }
 }
 
@@ -552,11 +526,7 @@ pub fn pull(
     let share = (strength / MAX_PULL).min(1.0) as f32;
     let color = [0, 1, 2, 3].map(|k| AMBER[k] + share * (ALARM[k] - AMBER[k]));
     let to = to_f32(hand);
-    let ball = Ball {
-        center: to,
-        radius: 0.035 * unit,
-        color,
-    };
+    let ball = Ball { center: to, radius: 0.035 * unit, color };
     let line = Line::new(to_f32(place), to, 2.0 + 6.0 * share, color);
     Some((line, ball))
 }

@@ -28,13 +28,7 @@ pub enum Arrows {
 
 impl Quantity {
     /// All quantities, in the order of key v.
-    pub const ALL: [Self; 5] = [
-        Self::Speed,
-        Self::Strain,
-        Self::Force,
-        Self::Contact,
-        Self::Error,
-    ];
+    pub const ALL: [Self; 5] = [Self::Speed, Self::Strain, Self::Force, Self::Contact, Self::Error];
 
     /// Returns the name of the quantity.
     pub fn name(self) -> &'static str {
@@ -190,9 +184,7 @@ mod tests {
         let forces = Arrows::Force.vectors(&run);
         let mass = run.model().network().unwrap().masses()[n - 1];
         let mut rates = vec![0.0; 6 * n];
-        run.model()
-            .system()
-            .eval_f(run.time(), run.state(), &mut rates);
+        run.model().system().eval_f(run.time(), run.state(), &mut rates);
         let a = rates[3 * n + 2 * n - 1];
         assert!((forces[2 * n - 1] - mass * a).abs() < 1e-12 && a.abs() > 0.1);
     }
@@ -202,10 +194,7 @@ mod tests {
         let circle = run("simple");
         assert!((Quantity::Speed.values(&circle, &[])[0] - 1.0).abs() < 1e-12);
         for quantity in Quantity::ALL {
-            assert_eq!(
-                quantity.values(&circle, &[]).is_empty(),
-                !quantity.is_in(&circle, false)
-            );
+            assert_eq!(quantity.values(&circle, &[]).is_empty(), !quantity.is_in(&circle, false));
         }
         assert_eq!(Quantity::Error.values(&circle, &[0.3, -0.4, 0.0]), [0.5]);
         assert!(Quantity::Error.is_in(&circle, true));
@@ -230,10 +219,7 @@ mod tests {
         let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
         let mut touched = 0;
         for (value, distance) in values.iter().zip(distances) {
-            assert!(
-                *value == 0.0 || distance < nearest + 1e-6,
-                "{value} N, {distance} m"
-            );
+            assert!(*value == 0.0 || distance < nearest + 1e-6, "{value} N, {distance} m");
             touched += usize::from(*value > 0.0);
         }
         assert!(touched > 5, "{touched}");

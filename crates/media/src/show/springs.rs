@@ -28,12 +28,7 @@ pub fn kind_look(kind: SpringKind) -> ([f32; 4], f32) {
 
 /// Returns the springs attached to particle i.
 pub fn springs_of(simulation: &Simulation, i: usize) -> Vec<Spring> {
-    simulation
-        .model()
-        .network()
-        .into_iter()
-        .flat_map(|n| n.springs_of(i))
-        .collect()
+    simulation.model().network().into_iter().flat_map(|n| n.springs_of(i)).collect()
 }
 
 /// Returns the name of a kind of springs.
@@ -50,11 +45,7 @@ pub fn list_springs_of(simulation: &Simulation, i: usize) -> String {
     let springs = springs_of(simulation, i);
     let line = |s: &Spring| {
         let kind = kind_name(s.kind);
-        let SpringLaw {
-            stiffness,
-            rest_length,
-            damping,
-        } = s.law;
+        let SpringLaw { stiffness, rest_length, damping } = s.law;
         let to = s.i + s.j - i;
         format!(
             "  {kind:<10}  to {to:>5}   k = {stiffness:.4} N/m   rest length {rest_length:.4} m   \

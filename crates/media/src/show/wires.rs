@@ -29,42 +29,32 @@ pub fn lines(
     color: [f32; 4],
 ) -> impl Iterator<Item = Line> {
     let faint = [color[0], color[1], color[2], 0.45];
-    network
-        .constraints()
-        .iter()
-        .flat_map(move |constraint| match *constraint {
-            Constraint::Rod { i, j, .. } => {
-                vec![Line::new(at(i), at(j), 4.0, color).with_shadow()]
-            }
-            Constraint::Rope { i, j, length, .. } => {
-                let down = network.gravity().unwrap_or_else(|| -Vector3::y());
-                rope([at(i), at(j)], length as f32, down.normalize(), color)
-            }
-            Constraint::Line {
-                point, direction, ..
-            } => {
-                let way = direction * (HALF_LENGTH * unit);
-                let ends = [point - way, point + way];
-                let [a, b] = ends.map(to_f32);
-                vec![Line::new(a, b, 1.6, faint)]
-            }
-            Constraint::Circle {
-                center,
-                normal,
-                radius,
-                ..
-            } => circle(center, normal, radius, faint),
-            Constraint::Sphere { center, radius, .. } => {
-                let normals = [Vector3::x(), Vector3::y(), Vector3::z()];
-                let circles = normals.map(|normal| circle(center, normal, radius, faint));
-                circles.concat()
-            }
-            Constraint::Joint(joint) => {
-                let body = network.body_of(joint.first);
-                body.map_or_else(Vec::new, |k| pin(&joint, &pose(k), color))
-            }
-            Constraint::Point { .. } | Constraint::Stop(_) => vec![],
-        })
+    network.constraints().iter().flat_map(move |constraint| match *constraint {
+        Constraint::Rod { i, j, .. } => {
+            vec![Line::new(at(i), at(j), 4.0, color).with_shadow()]
+        }
+        Constraint::Rope { i, j, length, .. } => {
+            let down = network.gravity().unwrap_or_else(|| -Vector3::y());
+            rope([at(i), at(j)], length as f32, down.normalize(), color)
+        }
+        Constraint::Line { point, direction, .. } => {
+            let way = direction * (HALF_LENGTH * unit);
+            let ends = [point - way, point + way];
+            let [a, b] = ends.map(to_f32);
+            vec![Line::new(a, b, 1.6, faint)]
+        }
+        Constraint::Circle { center, normal, radius, .. } => circle(center, normal, radius, faint),
+        Constraint::Sphere { center, radius, .. } => {
+            let normals = [Vector3::x(), Vector3::y(), Vector3::z()];
+            let circles = normals.map(|normal| circle(center, normal, radius, faint));
+            circles.concat()
+        }
+        Constraint::Joint(joint) => {
+            let body = network.body_of(joint.first);
+            body.map_or_else(Vec::new, |k| pin(&joint, &pose(k), color))
+        }
+        Constraint::Point { .. } | Constraint::Stop(_) => vec![],
+    })
 }
 
 /// Returns the lines of a joint whose first body has this pose: its axis, or a ball.
@@ -101,9 +91,7 @@ fn rope(ends: [[f32; 3]; 2], length: f32, down: Vector3<f64>, color: [f32; 4]) -
         let u = k as f32 / ROPE_PIECES as f32;
         a + (b - a) * u + down.cast::<f32>() * (4.0 * sag * u * (1.0 - u))
     };
-    (0..ROPE_PIECES)
-        .map(|k| line(place(k), place(k + 1)).with_shadow())
-        .collect()
+    (0..ROPE_PIECES).map(|k| line(place(k), place(k + 1)).with_shadow()).collect()
 }
 
 /// Returns the lines of a circle.
@@ -114,9 +102,7 @@ fn circle(center: Vector3<f64>, normal: Vector3<f64>, radius: f64, color: [f32; 
         let (sin, cos) = (std::f64::consts::TAU * k as f64 / PIECES as f64).sin_cos();
         to_f32(center + (side * cos + other * sin) * radius)
     };
-    (0..PIECES)
-        .map(|k| Line::new(place(k), place(k + 1), 1.6, color))
-        .collect()
+    (0..PIECES).map(|k| Line::new(place(k), place(k + 1), 1.6, color)).collect()
 }
 
 #[cfg(test)]
@@ -124,10 +110,7 @@ mod tests {
     use super::*;
 
     fn still(_: usize) -> Pose {
-        Pose {
-            place: a3_core::Path::Still(Vector3::new(1.0, 2.0, 3.0)).at(0.0),
-            orientation: None,
-        }
+        Pose { place: a3_core::Path::Still(Vector3::new(1.0, 2.0, 3.0)).at(0.0), orientation: None }
     }
 
     #[test]
@@ -135,21 +118,13 @@ mod tests {
         let (own, at) = (still(0), Vector3::new(1.5, 2.0, 3.0));
         let joint = Joint::new(JointKind::Hinge, ((0, &own), None), (at, Vector3::y()), 2.0);
         let lines = pin(&joint.unwrap(), &own, [0.0; 4]);
-        assert_eq!(
-            (lines[0].from, lines[0].to),
-            ([1.5, 1.5, 3.0], [1.5, 2.5, 3.0])
-        );
+        assert_eq!((lines[0].from, lines[0].to), ([1.5, 1.5, 3.0], [1.5, 2.5, 3.0]));
     }
 
     #[test]
     fn a_rope_keeps_about_its_length_where_it_hangs() {
         let mut network = Network::new(vec![1.0; 2]).unwrap();
-        let rope = Constraint::Rope {
-            i: 0,
-            j: 1,
-            length: 1.2,
-            restitution: 0.0,
-        };
+        let rope = Constraint::Rope { i: 0, j: 1, length: 1.2, restitution: 0.0 };
         network.add_constraint(rope).unwrap();
         for (distance, error) in [(1.1, 0.01), (1e-4, 1e-3), (0.6, 0.15), (1.2, 1e-6)] {
             let at = |i: usize| [i as f32 * distance, 0.0, 0.0];
@@ -163,18 +138,9 @@ mod tests {
     #[test]
     fn rods_join_their_particles_and_wires_lie_where_they_are() {
         let mut network = Network::new(vec![1.0; 2]).unwrap();
-        let rod = Constraint::Rod {
-            i: 0,
-            j: 1,
-            length: 1.0,
-        };
+        let rod = Constraint::Rod { i: 0, j: 1, length: 1.0 };
         let (center, normal, radius) = (Vector3::new(1.0, 2.0, 3.0), Vector3::z(), 0.5);
-        let circle = Constraint::Circle {
-            particle: 0,
-            center,
-            normal,
-            radius,
-        };
+        let circle = Constraint::Circle { particle: 0, center, normal, radius };
         for constraint in [rod, circle] {
             network.add_constraint(constraint).unwrap();
         }

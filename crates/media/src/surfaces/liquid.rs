@@ -75,10 +75,7 @@ impl Liquid {
         let free = free.filter(|i| !network.is_wall(*i) && !network.is_pinned(*i));
         let is_placed = |i: &usize| simulation.position(*i).iter().all(|x| x.is_finite());
         let free: Vec<_> = free.filter(is_placed).collect();
-        let places: Vec<_> = free
-            .iter()
-            .map(|i| simulation.position(*i).into())
-            .collect();
+        let places: Vec<_> = free.iter().map(|i| simulation.position(*i).into()).collect();
         let values: Option<Vec<f32>> = free.into_iter().map(value).collect();
         Self::around(&places, fluid.law().spacing, values.as_deref())
     }
@@ -186,11 +183,8 @@ impl Field {
                 normal[axis] += a - b;
                 if (a > 0.0) != (b > 0.0) {
                     for (other, sum) in sum.iter_mut().enumerate() {
-                        *sum += if other == axis {
-                            a / (a - b)
-                        } else {
-                            (from >> other & 1) as f32
-                        };
+                        *sum +=
+                            if other == axis { a / (a - b) } else { (from >> other & 1) as f32 };
                     }
                     cuts += 1.0;
                 }
@@ -201,11 +195,7 @@ impl Field {
             let share = cell[axis] as f64 + f64::from(sum[axis] / cuts);
             (self.origin[axis] + self.cell * share) as f32
         });
-        Some(Corner {
-            place,
-            value: self.colour(nodes),
-            normal: normal.map(|n| n / length),
-        })
+        Some(Corner { place, value: self.colour(nodes), normal: normal.map(|n| n / length) })
     }
 
     /// Finds the heights of the liquid above the nodes, from above down. Each is the mean over the
@@ -243,10 +233,7 @@ impl Field {
     fn colour(&self, nodes: [usize; 8]) -> f32 {
         let weights: f32 = nodes.iter().map(|node| self.sums[*node][0]).sum();
         if self.coloured.is_empty() {
-            let height = nodes
-                .iter()
-                .map(|node| self.heights[*node])
-                .fold(0.0, f32::max);
+            let height = nodes.iter().map(|node| self.heights[*node]).fold(0.0, f32::max);
             let spray = (SPRAY_WEIGHT - weights / 8.0).clamp(0.0, 0.5) / 0.5;
             return -2.0 - (1.0 - (-height / DEEP).exp() - spray);
         }
@@ -335,22 +322,14 @@ mod tests {
         let spacing = 0.1;
         let places = ball(1.0, spacing);
         let liquid = Liquid::around(&places, spacing, None);
-        let mut edges: Vec<_> = liquid
-            .triangles
-            .iter()
-            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
-            .collect();
+        let mut edges: Vec<_> =
+            liquid.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
         edges.sort_unstable();
         assert!(edges.len() > 3000);
         for [a, b] in &edges {
             assert!(edges.binary_search(&[*b, *a]).is_ok(), "an open edge");
         }
-        for Corner {
-            place,
-            value,
-            normal,
-        } in &liquid.corners
-        {
+        for Corner { place, value, normal } in &liquid.corners {
             assert!(*value < 0.0, "{value}");
             let radius = place.iter().map(|x| x * x).sum::<f32>().sqrt();
             assert!((0.9..1.08).contains(&radius), "{radius}");
@@ -413,11 +392,7 @@ mod tests {
         let liquid = Liquid::around(&places, 0.1, Some(&values));
         for corner in &liquid.corners {
             let exact = 0.5 + 0.4 * corner.place[0];
-            assert!(
-                (corner.value - exact).abs() < 0.06,
-                "{} {exact}",
-                corner.value
-            );
+            assert!((corner.value - exact).abs() < 0.06, "{} {exact}", corner.value);
         }
     }
 }

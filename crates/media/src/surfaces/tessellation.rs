@@ -32,10 +32,9 @@ impl Tessellation {
         match shape {
             Shape::Sphere { radius } => capsule([Vector3::zeros(); 2], *radius),
             Shape::Capsule { ends, radius } => capsule(*ends, *radius),
-            Shape::Mesh(mesh) => Self {
-                points: mesh.points().to_vec(),
-                triangles: mesh.triangles().to_vec(),
-            },
+            Shape::Mesh(mesh) => {
+                Self { points: mesh.points().to_vec(), triangles: mesh.triangles().to_vec() }
+            }
             Shape::Box { .. } | Shape::Floor => {
                 let simplices = shape.simplices();
                 let corners = simplices.triangles.iter().flatten();
@@ -54,22 +53,14 @@ impl Tessellation {
 /// axis, half of them at either end.
 fn capsule([low, high]: [Vector3<f64>; 2], radius: f64) -> Tessellation {
     let axis = (high - low).try_normalize(0.0).unwrap_or(Vector3::y());
-    let side = axis.cross(&if axis.x.abs() < 0.5 {
-        Vector3::x()
-    } else {
-        Vector3::z()
-    });
+    let side = axis.cross(&if axis.x.abs() < 0.5 { Vector3::x() } else { Vector3::z() });
     let side = side.normalize();
     let other = axis.cross(&side);
     let mut points = vec![];
     let rows = PARALLELS + 2;
     for row in 0..rows {
         // There are two equators, one at each end.
-        let (end, step) = if row < rows / 2 {
-            (low, row)
-        } else {
-            (high, row - 1)
-        };
+        let (end, step) = if row < rows / 2 { (low, row) } else { (high, row - 1) };
         let (up, out) = (-PI / 2.0 + PI * f64::from(step) / f64::from(PARALLELS)).sin_cos();
         for k in 0..MERIDIANS {
             let (sin, cos) = (TAU * f64::from(k) / f64::from(MERIDIANS)).sin_cos();
@@ -103,16 +94,12 @@ pub fn triangles(network: &Network, first: u32) -> Vec<[u32; 3]> {
 /// Returns the number of points of all bodies.
 pub fn count(network: &Network) -> usize {
     let parts = network.bodies().iter().flat_map(Body::parts);
-    parts
-        .map(|part| Tessellation::of(&part.shape).points.len())
-        .sum()
+    parts.map(|part| Tessellation::of(&part.shape).points.len()).sum()
 }
 
 /// Returns the points of all bodies in the state y (m).
 pub fn points(network: &Network, y: &[f64]) -> Vec<Vector3<f64>> {
-    placed(network, y)
-        .flat_map(|(_, part)| part.points)
-        .collect()
+    placed(network, y).flat_map(|(_, part)| part.points).collect()
 }
 
 /// Returns each part of each body, placed as in the state y, with the body's number.

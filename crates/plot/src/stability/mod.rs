@@ -42,9 +42,7 @@ impl StabilityRegions {
             return Err(Error::Empty("no method to draw"));
         }
         let extent = self.extent();
-        layout::fit([width, height], |figure, level| {
-            self.try_draw(figure, level, extent)
-        })
+        layout::fit([width, height], |figure, level| self.try_draw(figure, level, extent))
     }
 
     /// Returns the extent of all panels: that of the largest region, limited so that small ones are

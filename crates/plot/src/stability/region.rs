@@ -71,16 +71,12 @@ impl Extent {
     /// Returns the extent that also contains a point and its mirror image.
     pub fn with(self, [re, im]: Point) -> Self {
         let [low, high] = self.real;
-        Self {
-            real: [low.min(re), high.max(re)],
-            imaginary: self.imaginary.max(im.abs()),
-        }
+        Self { real: [low.min(re), high.max(re)], imaginary: self.imaginary.max(im.abs()) }
     }
 
     /// Returns the extent that also contains all of another.
     pub fn with_all(self, other: Self) -> Self {
-        self.with([other.real[0], other.imaginary])
-            .with([other.real[1], 0.0])
+        self.with([other.real[0], other.imaginary]).with([other.real[1], 0.0])
     }
 
     /// Returns the length of 1 in a panel of this width and height that shows the extent with a
@@ -123,37 +119,18 @@ impl Region {
     /// the eigenvalues, unless they are far away.
     pub(super) fn extent(&self) -> Extent {
         const WINDOW_HALF: f64 = 16.0;
-        let start = Extent {
-            real: [-0.5, 0.5],
-            imaginary: 0.5,
-        };
+        let start = Extent { real: [-0.5, 0.5], imaginary: 0.5 };
         let window = Rect::new(-WINDOW_HALF, -WINDOW_HALF, WINDOW_HALF, WINDOW_HALF);
         let outlines = contour::outlines(|z| self.is_stable(z), window, 320);
         let ends = |outline: &&Vec<Point>| {
-            outline
-                .iter()
-                .flatten()
-                .all(|part| part.abs() < WINDOW_HALF - 0.15)
+            outline.iter().flatten().all(|part| part.abs() < WINDOW_HALF - 0.15)
         };
-        let edge = outlines
-            .iter()
-            .filter(ends)
-            .flatten()
-            .copied()
-            .fold(start, Extent::with);
+        let edge = outlines.iter().filter(ends).flatten().copied().fold(start, Extent::with);
         // An unbounded region may be shown smaller, because there is less to see at its boundary.
-        let far = if outlines.iter().all(|outline| ends(&outline)) {
-            3.0
-        } else {
-            8.0
-        };
+        let far = if outlines.iter().all(|outline| ends(&outline)) { 3.0 } else { 8.0 };
         let limit = far * edge.size().max(2.0);
         let near = |z: &&Point| z.iter().all(|part| part.abs() <= limit);
-        self.eigenvalues
-            .iter()
-            .filter(near)
-            .copied()
-            .fold(edge, Extent::with)
+        self.eigenvalues.iter().filter(near).copied().fold(edge, Extent::with)
     }
 
     /// Draws grid, region and eigenvalues, with labels of this size.
@@ -165,19 +142,11 @@ impl Region {
         let y = Axis::linear([-dy, dy]).between(area.y1, area.y0);
         layout::axes(figure, area, [&x, &y], size, [true, true]);
         let at = |[re, im]: Point| {
-            [
-                area.centre()[0] + (re - middle) * unit,
-                area.centre()[1] - im * unit,
-            ]
+            [area.centre()[0] + (re - middle) * unit, area.centre()[1] - im * unit]
         };
         // The plane is sampled slightly beyond the edges, so that the outline along the end of the
         // sample is clipped.
-        let window = Rect::new(
-            middle - 1.04 * dx,
-            -1.04 * dy,
-            middle + 1.04 * dx,
-            1.04 * dy,
-        );
+        let window = Rect::new(middle - 1.04 * dx, -1.04 * dy, middle + 1.04 * dx, 1.04 * dy);
         let outlines: Vec<Vec<_>> = contour::outlines(|z| self.is_stable(z), window, 240)
             .into_iter()
             .map(|outline| outline.into_iter().map(at).collect())
@@ -195,11 +164,7 @@ impl Region {
             // once.
             let small = size * (40.0 / self.eigenvalues.len().max(40) as f64).powf(0.25);
             let mut seen = HashSet::new();
-            for z in self
-                .eigenvalues
-                .iter()
-                .filter(|z| z.iter().all(|part| part.is_finite()))
-            {
+            for z in self.eigenvalues.iter().filter(|z| z.iter().all(|part| part.is_finite())) {
                 let [px, py] = at(*z);
                 let fate = self.fate(*z);
                 if !seen.insert(((px * 4.0) as i64, (py * 4.0) as i64, fate)) {
@@ -250,10 +215,6 @@ pub fn beyond(figure: &mut Figure, [x, y]: Point, to: Point, r: f64, colour: &'s
     let (dx, dy) = (to[0] - x, to[1] - y);
     let length = dx.hypot(dy);
     let (u, v) = (r * dx / length, r * dy / length);
-    let wedge = vec![
-        [x + u, y + v],
-        [x - u - v, y - v + u],
-        [x - u + v, y - v - u],
-    ];
+    let wedge = vec![[x + u, y + v], [x - u - v, y - v + u], [x - u + v, y - v - u]];
     figure.area(vec![wedge], Paint::fill(colour));
 }

@@ -47,9 +47,7 @@ impl WorkPrecision {
             return Err(Error::Empty(why));
         };
         let words = [&*self.title, &self.subtitle, &self.foot];
-        layout::fit([width, height], |figure, level| {
-            self.try_draw(figure, level, words, axes)
-        })
+        layout::fit([width, height], |figure, level| self.try_draw(figure, level, words, axes))
     }
 
     /// Draws the diagram without its title, subtitle and foot on a sheet of this width and height,
@@ -58,17 +56,13 @@ impl WorkPrecision {
     #[must_use]
     pub fn draw_bare(&self, sheet: [f64; 2], text: f64) -> Option<Figure> {
         let axes = self.axes()?;
-        layout::largest(sheet, text, |figure, level| {
-            self.try_draw(figure, level, [""; 3], axes)
-        })
+        layout::largest(sheet, text, |figure, level| self.try_draw(figure, level, [""; 3], axes))
     }
 
     /// Lists all runs that can be drawn.
     fn runs(&self) -> impl Iterator<Item = &Measurement> {
         let curves = self.problems.iter().flat_map(|problem| &problem.curves);
-        curves
-            .flat_map(|curve| &curve.runs)
-            .filter(|run| run.is_drawn())
+        curves.flat_map(|curve| &curve.runs).filter(|run| run.is_drawn())
     }
 
     /// Lists all runs of other programs that can be drawn.
@@ -96,11 +90,8 @@ impl WorkPrecision {
         let limits = self.problems.iter().map(Problem::trusted);
         let limits = &mut limits.filter(|limit| *limit > 0.0);
         let (lowest, _) = range(limits).unwrap_or((least, most));
-        let least = if lowest > least / 30.0 {
-            least.clamp(lowest / 30.0, lowest / 2.0)
-        } else {
-            least
-        };
+        let least =
+            if lowest > least / 30.0 { least.clamp(lowest / 30.0, lowest / 2.0) } else { least };
         let known = self.marks().filter_map(|mark| mark.work);
         let (low, high) = range(&mut self.runs().map(|run| run.work).chain(known))?;
         Some([Axis::log(least, most.max(least)), Axis::log(low, high)])
@@ -123,11 +114,7 @@ impl WorkPrecision {
         let (below, beside) = (left.across(x0, left.x1), left.down_to(inner.y1));
         layout::label_below(&mut figure, below, &self.x_label, "more accurate", size);
         layout::label_left(&mut figure, beside, &self.y_label, "faster", size);
-        let strip = if self.runs().any(Measurement::is_lost) {
-            3.4 * size
-        } else {
-            0.0
-        };
+        let strip = if self.runs().any(Measurement::is_lost) { 3.4 * size } else { 0.0 };
         let merit = |[w, h]: [f64; 2]| ((w - strip) / 1.3).min(h - 1.5 * size);
         let (rooms, columns) = layout::grid(self.problems.len(), inner, 1.6 * size, merit);
         for (k, (problem, mut area)) in self.problems.iter().zip(rooms).enumerate() {

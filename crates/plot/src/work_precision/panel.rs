@@ -47,23 +47,12 @@ pub struct Drawing<'a> {
 
 impl<'a> Drawing<'a> {
     pub fn new(problem: &'a Problem, axes: [Axis; 2], main: Rect, size: f64, fine: f64) -> Self {
-        Self {
-            problem,
-            axes,
-            main,
-            size,
-            fine,
-            taken: vec![],
-            lines: vec![],
-        }
+        Self { problem, axes, main, size, fine, taken: vec![], lines: vec![] }
     }
 
     /// Returns the point of a run.
     fn at(&self, run: &Measurement) -> Point {
-        [
-            self.axes[0].at(run.error.max(f64::MIN_POSITIVE)),
-            self.axes[1].at(run.work),
-        ]
+        [self.axes[0].at(run.error.max(f64::MIN_POSITIVE)), self.axes[1].at(run.work)]
     }
 
     /// Draws the panel, with a strip of this width for runs that blew up; `numbers` tells whether
@@ -78,9 +67,7 @@ impl<'a> Drawing<'a> {
         if strip.width() > 0.0 {
             figure.rect(strip, Paint::fill("#fbefec"));
             if numbers[0] {
-                let label = Label::new("blew up", size)
-                    .colour("#8c2d19")
-                    .anchor(Anchor::Middle);
+                let label = Label::new("blew up", size).colour("#8c2d19").anchor(Anchor::Middle);
                 figure.text([strip.centre()[0], main.y1 + 1.15 * size], label);
             }
         }
@@ -146,11 +133,7 @@ impl<'a> Drawing<'a> {
             for (r, run) in runs.filter(|(_, run)| run.is_drawn() && !run.is_lost()) {
                 let point = self.at(run);
                 figure.runs.push(([k, r], point));
-                let filling = if run.held {
-                    Filling::Half
-                } else {
-                    Filling::Full
-                };
+                let filling = if run.held { Filling::Half } else { Filling::Full };
                 style.draw_marker(figure, point, radius, filling);
                 self.taken.push(Rect::around(point, 1.2 * radius));
             }
@@ -161,9 +144,8 @@ impl<'a> Drawing<'a> {
     /// Draws the guide, if there is one.
     fn guide(&mut self, figure: &mut Figure) {
         let points = self.problem.guide.iter().flat_map(|it| &it.points);
-        let line: Vec<_> = points
-            .map(|[error, work]| [self.axes[0].at(*error), self.axes[1].at(*work)])
-            .collect();
+        let line: Vec<_> =
+            points.map(|[error, work]| [self.axes[0].at(*error), self.axes[1].at(*work)]).collect();
         figure.line(&line, guide_pen(0.14 * self.fine));
         self.keep_clear(&line);
     }
@@ -308,9 +290,7 @@ impl<'a> Drawing<'a> {
             let curve = &self.problem.curves[part[0].0];
             let mut runs: Vec<_> = (0..part.len()).collect();
             runs.sort_by_key(|k| k.abs_diff(part.len() / 2));
-            let label = Label::new(&curve.name, size)
-                .colour(curve.style.colour)
-                .bold();
+            let label = Label::new(&curve.name, size).colour(curve.style.colour).bold();
             let places = |label: Label| {
                 let room = label.room([0.0, 0.0]);
                 let offsets = [

@@ -156,11 +156,7 @@ mod tests {
             label: None,
             spread: None,
         };
-        let curve = |runs| Curve {
-            style: CurveStyle::default(),
-            name: String::new(),
-            runs,
-        };
+        let curve = |runs| Curve { style: CurveStyle::default(), name: String::new(), runs };
         let problem = Problem {
             // The fourth run of the first is below the resolution, and its last blew up.
             curves: vec![

@@ -24,19 +24,11 @@ pub fn gpu() -> Option<Gpu> {
 }
 
 /// The floor of the pictures.
-pub const FLOOR: Floor = Floor {
-    height: 0.0,
-    solid: true,
-};
+pub const FLOOR: Floor = Floor { height: 0.0, solid: true };
 
 /// Creates a renderer of offscreen pictures.
 pub fn renderer(gpu: &Gpu, topology: &Topology) -> Renderer {
-    Renderer::new(
-        gpu,
-        OFFSCREEN_FORMAT,
-        gpu.samples(OFFSCREEN_FORMAT),
-        topology,
-    )
+    Renderer::new(gpu, OFFSCREEN_FORMAT, gpu.samples(OFFSCREEN_FORMAT), topology)
 }
 
 /// Draws pictures, each in its part of a target of this size (px).
@@ -71,19 +63,11 @@ pub struct Sheet {
 impl Sheet {
     pub fn new() -> Self {
         const N: u32 = 16;
-        let mut topology = Topology {
-            points: (N * N) as usize,
-            ..Topology::default()
-        };
+        let mut topology = Topology { points: (N * N) as usize, ..Topology::default() };
         let mut points = vec![];
         for (i, j) in (0..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
             let (u, v) = (j as f32 / (N - 1) as f32, i as f32 / (N - 1) as f32);
-            points.push([
-                2.0 * u - 1.0,
-                1.9 - 1.5 * v,
-                0.25 * (9.0 * u).sin() + 0.5 * v * v,
-                0.0,
-            ]);
+            points.push([2.0 * u - 1.0, 1.9 - 1.5 * v, 0.25 * (9.0 * u).sin() + 0.5 * v * v, 0.0]);
             let k = i * N + j;
             let (has_right, has_below) = (j + 1 < N, i + 1 < N);
             for (is_there, other) in [(has_right, k + 1), (has_below, k + N)] {
@@ -95,25 +79,15 @@ impl Sheet {
                 (has_right && has_below, k + N + 1, 1.6, [0.0, 0.33, 0.36]),
             ] {
                 let ends = [k, other];
-                topology
-                    .springs
-                    .extend(is_there.then_some(Spring { ends, width, color }));
+                topology.springs.extend(is_there.then_some(Spring { ends, width, color }));
             }
             if has_right && has_below {
                 let halves = [[k, k + N, k + 1], [k + 1, k + N, k + N + 1]];
                 topology.triangles.extend(halves);
             }
         }
-        let ball = Ball {
-            center: [0.9, 0.4, 0.9],
-            radius: 0.4,
-            color: [0.1, 0.3, 0.5, 1.0],
-        };
-        let pin = Ball {
-            center: [-1.0, 1.9, 0.0],
-            radius: 0.06,
-            color: [0.02, 0.02, 0.05, 1.0],
-        };
+        let ball = Ball { center: [0.9, 0.4, 0.9], radius: 0.4, color: [0.1, 0.3, 0.5, 1.0] };
+        let pin = Ball { center: [-1.0, 1.9, 0.0], radius: 0.06, color: [0.02, 0.02, 0.05, 1.0] };
         let orange = [0.9, 0.4, 0.0, 1.0];
         let line = Line::new([-1.4, 0.2, 0.4], [-0.9, 1.0, 0.9], 5.0, orange);
         Self {
@@ -147,10 +121,7 @@ impl Sheet {
             balls: &self.balls,
             solids: &self.solids,
             lines: &self.lines,
-            liquid: Liquid {
-                corners: &self.liquid.0,
-                triangles: &self.liquid.1,
-            },
+            liquid: Liquid { corners: &self.liquid.0, triangles: &self.liquid.1 },
             floor: Some(FLOOR),
             dark: self.dark,
             ..Picture::new(self.camera)

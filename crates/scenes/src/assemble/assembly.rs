@@ -109,11 +109,7 @@ impl Assembly<'_> {
         only_pull: bool,
     ) {
         let kinds = [&mut self.springs, &mut self.cords];
-        let moved = |s: Spring| Spring {
-            i: s.i + first,
-            j: s.j + first,
-            ..s
-        };
+        let moved = |s: Spring| Spring { i: s.i + first, j: s.j + first, ..s };
         kinds[usize::from(only_pull)].extend(springs.into_iter().map(moved));
     }
 
@@ -221,10 +217,7 @@ pub(super) fn state_of(positions: &[Vector3<f64>], velocities: &[Vector3<f64>]) 
 /// Sets a state to the given one: without positions, those of the bodies stay. A first-order system
 /// has positions only.
 pub(super) fn write_state(given: &State, particles: usize, state: &mut [f64]) -> Result<(), Fault> {
-    let parts = [
-        ("state.positions", &given.positions),
-        ("state.velocities", &given.velocities),
-    ];
+    let parts = [("state.positions", &given.positions), ("state.velocities", &given.velocities)];
     let positions = 3 * particles;
     let (halves, rotations) = state.split_at_mut(state.len().min(2 * positions));
     write_rotations(given, rotations)?;
@@ -248,10 +241,9 @@ pub(super) fn write_state(given: &State, particles: usize, state: &mut [f64]) ->
 fn write_rotations(given: &State, state: &mut [f64]) -> Result<(), Fault> {
     let bodies = state.len() / ROTATION;
     let (turned, momenta) = (&given.orientations, &given.angular_momenta);
-    for (key, count) in [
-        ("state.orientations", turned.len()),
-        ("state.angular_momenta", momenta.len()),
-    ] {
+    for (key, count) in
+        [("state.orientations", turned.len()), ("state.angular_momenta", momenta.len())]
+    {
         refuse!(if count != 0 && count != bodies => key:
             "there are {count}, but {bodies} rigid bodies");
     }
@@ -304,12 +296,7 @@ impl SkinSpec {
     /// Creates the description of a body's skin that suits this gravity (m/s2), over springs of a
     /// stiffness (N/m) whose damping over stiffness is `time` (s).
     pub fn of(body: &dyn Keys, gravity: f64, [stiffness, time]: [f64; 2]) -> Self {
-        Self {
-            keys: body.skin(),
-            stiffness,
-            time,
-            gravity,
-        }
+        Self { keys: body.skin(), stiffness, time, gravity }
     }
 
     /// Returns the smallest acceleration (m/s2) against which the skin keeps surfaces apart.
@@ -376,16 +363,8 @@ pub(super) fn point_skin(
     [mass, thickness]: [f64; 2],
 ) -> Result<Skin, Fault> {
     let thick = Some(thickness);
-    let keys = SkinKeys {
-        thickness: thick,
-        ..keys
-    };
-    let spec = SkinSpec {
-        keys,
-        stiffness: 0.0,
-        time: 0.0,
-        gravity,
-    };
+    let keys = SkinKeys { thickness: thick, ..keys };
+    let spec = SkinSpec { keys, stiffness: 0.0, time: 0.0, gravity };
     spec.check()?;
     Ok(Skin {
         damping: POINT_DAMPING / (spec.acceleration() * thickness).sqrt(),

@@ -39,9 +39,7 @@ impl Cloth {
             _ => (self.down, -Vector3::y()),
         };
         let axis = given.map_or(usual, Vector3::from);
-        let axis = axis
-            .try_normalize(1e-9)
-            .filter(|axis| axis.iter().all(|x| x.is_finite()));
+        let axis = axis.try_normalize(1e-9).filter(|axis| axis.iter().all(|x| x.is_finite()));
         axis.ok_or_else(|| Fault::new(key, "it must be a direction, such as [1, 0, 0]"))
     }
 }
@@ -90,9 +88,7 @@ impl Body for Cloth {
             let share = i as f64 / (rows - 1) as f64;
             for [along, outwards] in &row {
                 let in_row = top + right * (along - middle) + out * *outwards;
-                assembly
-                    .positions
-                    .push(in_row + down * (i as f64 * spacing));
+                assembly.positions.push(in_row + down * (i as f64 * spacing));
                 assembly.velocities.push(velocity + sway * share);
             }
         }

@@ -79,12 +79,7 @@ fn constraint(
             let length = spec.length.unwrap_or(apart.norm());
             if is_rope {
                 at("restitution", share("it", restitution))?;
-                return Ok(Constraint::Rope {
-                    i,
-                    j,
-                    length,
-                    restitution,
-                });
+                return Ok(Constraint::Rope { i, j, length, restitution });
             }
             refuse!(if restitution != 0.0 => "restitution": "only a rope has this key");
             Ok(Constraint::Rod { i, j, length })
@@ -106,10 +101,9 @@ fn place(network: &Network, state: &[f64], i: usize) -> Vector3<f64> {
 /// Creates the constraint of a particle to a point, a line, a circle or a sphere.
 fn wire(particle: usize, spec: &ConstraintSpec) -> Result<Constraint, Fault> {
     Ok(match (spec.point, &spec.line, &spec.circle, &spec.sphere) {
-        (Some(position), None, None, None) => Constraint::Point {
-            particle,
-            position: Vector3::from(position),
-        },
+        (Some(position), None, None, None) => {
+            Constraint::Point { particle, position: Vector3::from(position) }
+        }
         (None, Some(line), None, None) => Constraint::Line {
             particle,
             point: Vector3::from(line.point),
@@ -162,10 +156,7 @@ pub(super) fn add_joints(
     for &(i, k) in &pins.attached {
         at("pin.body", check_body(network, k))?;
         let there = place(network, state, i);
-        let own = Pose {
-            place: Path::Still(there).at(0.0),
-            orientation: None,
-        };
+        let own = Pose { place: Path::Still(there).at(0.0), orientation: None };
         let (center, pose) = (network.bodies()[k].center(), network.pose(k, state));
         let sides = ((i, &own), Some((center, &pose)));
         let length = network.bodies()[k].radius();
@@ -194,8 +185,7 @@ fn join(spec: &JointSpec, network: &mut Network, state: &[f64]) -> Result<(), Fa
     let x = Vector3::x();
     let (hinge, slider) = (spec.hinge.as_ref(), spec.slider.as_ref());
     let kinds = [
-        spec.ball
-            .map(|there| ("ball", JointKind::Ball, there.into(), x)),
+        spec.ball.map(|there| ("ball", JointKind::Ball, there.into(), x)),
         hinge.map(|it| ("hinge.axis", JointKind::Hinge, it.at.into(), it.axis.into())),
         slider.map(|it| ("slider.axis", JointKind::Slider, center, it.axis.into())),
         spec.fixed.then_some(("fixed", JointKind::Fixed, center, x)),
@@ -264,12 +254,7 @@ impl Free {
         refuse!(if !(0.0..=1.0).contains(&restitution) => "restitution":
             "must be from 0 to 1, not {restitution}");
         for is_upper in [false, true] {
-            let stop = Stop {
-                joint,
-                limits,
-                is_upper,
-                restitution,
-            };
+            let stop = Stop { joint, limits, is_upper, restitution };
             at("limits", network.add_constraint(Constraint::Stop(stop)))?;
         }
         Ok(())
@@ -305,9 +290,7 @@ fn check_body(network: &Network, k: usize) -> Result<(), String> {
         0 => Err("there is no rigid body".into()),
         count => {
             let last = count - 1;
-            Err(format!(
-                "there is no rigid body {k}: they are numbered 0 to {last}"
-            ))
+            Err(format!("there is no rigid body {k}: they are numbered 0 to {last}"))
         }
     }
 }

@@ -58,11 +58,9 @@ impl Fluid {
 
     /// Returns the lattices of the fluid.
     fn lattices(&self) -> Result<Lattices<'_>, Fault> {
-        for (key, number) in [
-            ("spacing", self.spacing),
-            ("density", self.density),
-            ("sound", self.sound),
-        ] {
+        for (key, number) in
+            [("spacing", self.spacing), ("density", self.density), ("sound", self.sound)]
+        {
             at(key, positive("it", number))?;
         }
         at("viscosity", at_least(0.0, "it", self.viscosity))?;
@@ -186,10 +184,7 @@ impl Body for Fluid {
         assembly.masses.resize(all, mass);
         // As stiff as the fluid itself; against soft bodies, theirs counts.
         let stiffness = mass * (self.sound / self.spacing).powi(2);
-        let keys = SkinKeys {
-            contact_stiffness: Some(stiffness),
-            ..SkinKeys::default()
-        };
+        let keys = SkinKeys { contact_stiffness: Some(stiffness), ..SkinKeys::default() };
         let skin = point_skin(keys, assembly.gravity, [mass, thickness])?;
         assembly.skins.resize(free, skin);
         // Surfaces do not touch walls.
@@ -285,14 +280,7 @@ impl<'a> Column<'a> {
         size[axis] = (layers + f64::from(LAYERS)) * fluid.spacing;
         let middle = Vector3::from(inflow.at) - velocity * (0.5 * size[axis] / speed);
         let places = Places::new(fluid, size, middle.into())?;
-        Ok(Self {
-            places,
-            fluid,
-            inflow,
-            axis,
-            speed,
-            layers,
-        })
+        Ok(Self { places, fluid, inflow, axis, speed, layers })
     }
 
     /// Lists the particles, numbered from `first`: their places (m) and velocities (m/s) at the
@@ -320,16 +308,8 @@ impl<'a> Column<'a> {
                 let velocity = if last { still } else { flow };
                 return (here, velocity, closes);
             }
-            let path = Path::Line {
-                from: here,
-                to: here + flow * end,
-                start: 0.0,
-                end,
-            };
-            let held = Held {
-                until: (!last).then_some(until),
-                ..Held::new(i, path)
-            };
+            let path = Path::Line { from: here, to: here + flow * end, start: 0.0, end };
+            let held = Held { until: (!last).then_some(until), ..Held::new(i, path) };
             (here, flow, Some(held))
         })
     }
@@ -378,10 +358,7 @@ fn space(outflow: &Outflow, fluid: &Fluid) -> Result<Space, Fault> {
     for half in half.iter() {
         at("size", positive("each edge", *half))?;
     }
-    Ok(Space {
-        at: outflow.at.into(),
-        half,
-    })
+    Ok(Space { at: outflow.at.into(), half })
 }
 
 /// Lets the liquid leave the scene that begins in an outflow.

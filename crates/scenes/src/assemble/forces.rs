@@ -86,12 +86,7 @@ fn region(spec: &RegionSpec) -> Result<Region, Fault> {
     at("length", positive("it", length))?;
     let (sine, shift, turn) = (spec.sine.as_ref(), spec.shift.as_ref(), spec.turn.as_ref());
     let (path, turn) = motion(sine, shift, turn, Vector3::from(spec.at))?;
-    Ok(Region {
-        path,
-        turn,
-        radius: spec.radius,
-        length,
-    })
+    Ok(Region { path, turn, radius: spec.radius, length })
 }
 
 /// Returns the mean mass (kg) of the particles. Points of rigid bodies have none, and do not count.
@@ -170,10 +165,7 @@ fn cuboid(spec: &BoxSpec) -> Result<Obstacle, Fault> {
 
 fn capsule(spec: &CapsuleSpec) -> Result<Obstacle, Fault> {
     let axis = Vector3::from(spec.to) - Vector3::from(spec.from);
-    let shape = Shape::Capsule {
-        ends: [Vector3::zeros(), axis],
-        radius: spec.radius,
-    };
+    let shape = Shape::Capsule { ends: [Vector3::zeros(), axis], radius: spec.radius };
     made(&spec.keys(), spec.from, || Ok(shape))
 }
 
@@ -187,10 +179,7 @@ fn solid(spec: &ObstacleSpec, files: &mut Files) -> Result<Obstacle, Fault> {
 
 fn floor(spec: &Floor) -> Result<Obstacle, Fault> {
     let spec = match *spec {
-        Floor::Height(height) => FloorSpec {
-            height,
-            ..FloorSpec::default()
-        },
+        Floor::Height(height) => FloorSpec { height, ..FloorSpec::default() },
         Floor::Table(spec) => spec,
     };
     let keys = ObstacleKeys {

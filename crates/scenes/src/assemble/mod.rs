@@ -82,11 +82,7 @@ impl Description {
         asked: Option<Grid>,
         mesh: &mut dyn FnMut(&str) -> Result<Mesh, String>,
     ) -> Result<Setup, Fault> {
-        let mut files = Files {
-            budget: Budget::new(asked),
-            mesh,
-            touching: touches(self),
-        };
+        let mut files = Files { budget: Budget::new(asked), mesh, touching: touches(self) };
         let (mut model, mut state, presentation, touch) = if let Some(circle) = &self.circle {
             let model = Model::Points(Arc::new(Circling));
             (model, circle.start.to_vec(), Presentation::default(), None)
@@ -118,20 +114,15 @@ impl Description {
         if given.is_none_or(|given| given.positions.is_empty()) {
             constraints::check(self, &scene)?;
         }
-        let presentation = Presentation {
-            viewpoint: self.viewpoint(&scene)?,
-            trail: self.trail,
-            ..presentation
-        };
+        let presentation =
+            Presentation { viewpoint: self.viewpoint(&scene)?, trail: self.trail, ..presentation };
         if let Some(reach) = self.reach {
             at("reach", at_least(1.0, "it", reach))?;
             scene.reach = reach;
         }
         if let Some(swing) = &self.swing {
-            scene.swing = Some(Swing {
-                amplitude: Vector3::from(swing.amplitude),
-                rate: swing.rate,
-            });
+            scene.swing =
+                Some(Swing { amplitude: Vector3::from(swing.amplitude), rate: swing.rate });
         }
         if let (Model::Network(network), Some(wind)) = (&mut scene.model, &self.wind) {
             scene.wind = Some(forces::wind(wind, network).map_err(|f| f.within("wind"))?);
@@ -139,11 +130,7 @@ impl Description {
                 network.set_wind(scene.wind);
             }
         }
-        Ok(Setup {
-            scene,
-            presentation: Arc::new(presentation),
-            defaults: self.defaults()?,
-        })
+        Ok(Setup { scene, presentation: Arc::new(presentation), defaults: self.defaults()? })
     }
 
     /// Returns the camera of the description, or else one that sees the whole scene.
@@ -165,11 +152,9 @@ impl Description {
             integrators::find(name).ok_or_else(unknown)
         };
         let solver = self.solver.as_deref().map(find).transpose()?;
-        for (key, number) in [
-            ("step", self.step),
-            ("max_step", self.max_step),
-            ("duration", self.duration),
-        ] {
+        for (key, number) in
+            [("step", self.step), ("max_step", self.max_step), ("duration", self.duration)]
+        {
             if let Some(number) = number {
                 at(key, positive("it", number))?;
             }
@@ -183,12 +168,7 @@ impl Description {
             Some(Control::Step(_)) => 1.0,
             _ => fluid::step_scale(&self.fluid),
         };
-        Ok(Defaults {
-            solver,
-            control,
-            duration: self.duration,
-            step_scale,
-        })
+        Ok(Defaults { solver, control, duration: self.duration, step_scale })
     }
 }
 
@@ -200,10 +180,7 @@ impl Description {
 pub(crate) fn restrip(own: &Cloth, other: &mut Cloth) -> Result<(), Fault> {
     let strip = |spacing: f64| {
         let [bending, compression] = strip_of(own.material.as_deref()?, spacing)?;
-        Some(BucklingSpec {
-            bending,
-            compression,
-        })
+        Some(BucklingSpec { bending, compression })
     };
     let (was, is) = (own.checked_spacing()?, other.checked_spacing()?);
     if own.buckling.is_some() && own.buckling == strip(was) {
@@ -302,13 +279,7 @@ fn network_of(description: &Description, files: &mut Files) -> Result<NetworkPar
     for rod in assembly.rods {
         at("", network.add_constraint(rod))?;
     }
-    fluid::add(
-        assembly.fluid,
-        assembly.outflows,
-        assembly.soaked,
-        &mut network,
-        &state[..3 * n],
-    )?;
+    fluid::add(assembly.fluid, assembly.outflows, assembly.soaked, &mut network, &state[..3 * n])?;
     constraints::add(description, &mut network, &state)?;
     constraints::add_joints(description, budget, &assembly.pins, &mut network, &state)?;
     let triangles = assembly.presentation.surface.triangles.iter();
@@ -321,12 +292,8 @@ fn network_of(description: &Description, files: &mut Files) -> Result<NetworkPar
         at("strain_limit", limited).map_err(|fault| fault.within(&key))?;
     }
     forces::add_obstacles(description, &mut network, files)?;
-    let touch = Touch {
-        skins: assembly.skins,
-        edges: assembly.edges,
-        drops: assembly.drops,
-        bodies: true,
-    };
+    let touch =
+        Touch { skins: assembly.skins, edges: assembly.edges, drops: assembly.drops, bodies: true };
     if files.touching {
         let touch = Touch {
             bodies: description.self_collision || !description.body.is_empty(),
@@ -363,11 +330,8 @@ fn assembled<'a>(description: &'a Description, files: &mut Files) -> Result<Asse
     }
     let gravity = description.contact_gravity();
     at("contact_gravity", positive("it", gravity))?;
-    let mut assembly = Assembly {
-        gravity,
-        liquid: description.fluid.first(),
-        ..Assembly::default()
-    };
+    let mut assembly =
+        Assembly { gravity, liquid: description.fluid.first(), ..Assembly::default() };
     for (key, body) in bodies(description) {
         let added = assembly.add(&key, body, files);
         added.map_err(|fault| fault.within(&key))?;

@@ -23,14 +23,7 @@ pub(super) fn motion(
         (Some((turn, about)), None, shift) => {
             let way = shift.map(way).transpose()?;
             let (by, [start, end]) = way.unwrap_or_default();
-            Path::Turn {
-                turn,
-                arm: from - about,
-                from: about,
-                to: about + by,
-                start,
-                end,
-            }
+            Path::Turn { turn, arm: from - about, from: about, to: about + by, start, end }
         }
         (None, None, None) => Path::Still(from),
         (None, Some(sine), None) => Path::Sine {
@@ -41,12 +34,7 @@ pub(super) fn motion(
         },
         (None, None, Some(shift)) => {
             let (by, [start, end]) = way(shift)?;
-            Path::Line {
-                from,
-                to: from + by,
-                start,
-                end,
-            }
+            Path::Line { from, to: from + by, start, end }
         }
     };
     Ok((path, turn))
@@ -83,12 +71,7 @@ fn turn(turn: &description::Turn) -> Result<Turn, Fault> {
         None => refuse!("end":
             "with an `angle`, it is needed: the time at which the turn ends (s)"),
     };
-    Ok(Turn {
-        axis,
-        rate,
-        start,
-        end: turn.end,
-    })
+    Ok(Turn { axis, rate, start, end: turn.end })
 }
 
 /// What holds particles.
@@ -159,10 +142,7 @@ impl Pinned {
         for i in particles {
             let (sine, shift, turn) = (pin.sine.as_ref(), pin.shift.as_ref(), pin.turn.as_ref());
             let (path, _) = motion(sine, shift, turn, positions[i])?;
-            self.paths.push(Held {
-                until: pin.until,
-                ..Held::new(first + i, path)
-            });
+            self.paths.push(Held { until: pin.until, ..Held::new(first + i, path) });
         }
         Ok(())
     }

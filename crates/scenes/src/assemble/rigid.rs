@@ -82,10 +82,7 @@ impl Body for RigidBody {
         let orientation = Rotation3::from_matrix_unchecked(turn * axes);
         let q = *UnitQuaternion::from_rotation_matrix(&orientation).quaternion();
         let spin = Vector3::from(self.spin.unwrap_or_default());
-        let rotation = Rotation {
-            q,
-            momentum: made.momentum(q, spin),
-        };
+        let rotation = Rotation { q, momentum: made.momentum(q, spin) };
         let origin = Vector3::from(self.at.unwrap_or_default());
         let place = origin + turn * properties.center;
         let count = 1 + made.points().len();

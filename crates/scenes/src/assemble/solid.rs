@@ -35,11 +35,7 @@ impl Body for Jelly {
         let law = |kind: SpringKind, rest_length| {
             let stiffness = self.stiffness[kind as usize];
             let damping = stiffness * time;
-            SpringLaw {
-                stiffness,
-                rest_length,
-                damping,
-            }
+            SpringLaw { stiffness, rest_length, damping }
         };
         let from_center = |cell: [usize; 3]| {
             Vector3::from_fn(|a, _| cell[a] as f64 * spacing[a] - 0.5 * self.size[a])
@@ -118,23 +114,14 @@ impl Solid {
             SolidModel::NeoHookean => Hyperelastic::NeoHookean,
             SolidModel::StVenantKirchhoff => Hyperelastic::StVenantKirchhoff,
         };
-        let material = Material {
-            model,
-            young,
-            poisson,
-            damping,
-        };
+        let material = Material { model, young, poisson, damping };
         at("poisson", material.check()).map(|()| material)
     }
 }
 
 /// Rewrites an error of a tetrahedron with the numbers that the file gives to it and its corners.
 fn in_file(why: Error, mesh: Option<&Mesh>, shape: &Shape, material: Material) -> Error {
-    let Shape {
-        positions,
-        tetrahedra,
-        ..
-    } = shape;
+    let Shape { positions, tetrahedra, .. } = shape;
     let is_wrong = |t: &[u32; 4]| Elastic::new(0, &[*t], positions, material).is_err();
     let found = tetrahedra.iter().position(is_wrong).zip(mesh);
     let numbered = found.and_then(|(k, mesh)| {
@@ -174,11 +161,7 @@ impl Body for Solid {
         let solid = Elastic::new(first, &shape.tetrahedra, &shape.positions, material);
         let solid = solid.map_err(|why| in_file(why, mesh.as_ref(), &shape, material));
         let solid = at(source, solid)?;
-        let Shape {
-            positions,
-            tetrahedra,
-            boundary,
-        } = shape;
+        let Shape { positions, tetrahedra, boundary } = shape;
         let mut masses = vec![0.0; positions.len()];
         let mut spacings = vec![f64::INFINITY; positions.len()];
         for (corners, volume) in tetrahedra.iter().zip(solid.volumes()) {
@@ -209,12 +192,7 @@ impl Body for Solid {
 
 /// Returns the smallest height of a tetrahedron over one of its faces (m).
 fn height([a, b, c, d]: [Vector3<f64>; 4], volume: f64) -> f64 {
-    let sides = [
-        [b - a, c - a],
-        [b - a, d - a],
-        [c - a, d - a],
-        [c - b, d - b],
-    ];
+    let sides = [[b - a, c - a], [b - a, d - a], [c - a, d - a], [c - b, d - b]];
     let doubled = sides.map(|[u, v]| u.cross(&v).norm());
     6.0 * volume / doubled.into_iter().fold(0.0, f64::max)
 }

@@ -28,11 +28,7 @@ impl Body for Chain {
         let rest_length = self.rest_length.unwrap_or(length);
         at("rest_length", at_least(0.0, "it", rest_length))?;
         let (stiffness, damping) = (self.stiffness, self.damping);
-        let law = SpringLaw {
-            stiffness,
-            rest_length,
-            damping,
-        };
+        let law = SpringLaw { stiffness, rest_length, damping };
         let ratio = damping / stiffness;
         let time = if stiffness > 0.0 { ratio } else { 0.0 };
         let skin = SkinSpec::of(self, assembly.gravity, [stiffness, time]);
@@ -78,10 +74,7 @@ impl Body for Chain {
 impl Body for Particles {
     fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault> {
         let n = self.positions.len();
-        for (key, count) in [
-            ("velocities", self.velocities.len()),
-            ("masses", self.masses.len()),
-        ] {
+        for (key, count) in [("velocities", self.velocities.len()), ("masses", self.masses.len())] {
             refuse!(if count != 0 && count != n => key: "there are {count}, but {n} positions");
         }
         refuse!(if n == 0 => "positions": "there must be at least one position");
@@ -118,9 +111,7 @@ pub(super) fn springs(specs: &[SpringSpec], particles: usize) -> Result<Vec<Spri
     let spring = |(k, &(i, j, stiffness, rest_length, damping)): (usize, &SpringSpec)| {
         let law = if i.max(j) >= particles || i == j {
             let last = particles - 1;
-            Err(format!(
-                "{i} and {j} must be two different particles from 0 to {last}"
-            ))
+            Err(format!("{i} and {j} must be two different particles from 0 to {last}"))
         } else {
             SpringLaw::new(stiffness, rest_length, damping).map_err(|e| e.to_string())
         };

@@ -35,10 +35,7 @@ impl SceneEntry {
 
 macro_rules! entry {
     ($name:literal) => {
-        SceneEntry {
-            name: $name,
-            text: include_str!(concat!($name, ".toml")),
-        }
+        SceneEntry { name: $name, text: include_str!(concat!($name, ".toml")) }
     };
 }
 

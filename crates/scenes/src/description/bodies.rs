@@ -127,10 +127,7 @@ fn or_material(schema: &mut Schema) {
     let Some(Value::Array(required)) = schema.get_mut("required") else {
         return;
     };
-    let of_material = |key: &Value| {
-        key.as_str()
-            .is_some_and(|key| material::KEYS.contains(&key))
-    };
+    let of_material = |key: &Value| key.as_str().is_some_and(|key| material::KEYS.contains(&key));
     let (given, rest): (Vec<_>, Vec<_>) = required.drain(..).partition(of_material);
     *required = rest;
     let either = json!([{ "required": given }, { "required": ["material"] }]);

@@ -233,8 +233,7 @@ impl Description {
         let named = self.named_material();
         let fits = |of_fabrics| named.is_none_or(|it| material::names(of_fabrics).contains(&it));
         let some = all.filter(|(of_fabrics, count)| *count > 0 && fits(*of_fabrics));
-        some.flat_map(|(of_fabrics, _)| material::names(of_fabrics))
-            .collect()
+        some.flat_map(|(of_fabrics, _)| material::names(of_fabrics)).collect()
     }
 
     /// Returns the name of the material of its first body that has one.

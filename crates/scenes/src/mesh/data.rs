@@ -79,10 +79,7 @@ impl Mesh {
     /// Returns the mesh magnified by a factor.
     pub(crate) fn scaled(&self, factor: f64) -> Self {
         let mut mesh = self.clone();
-        mesh.positions
-            .iter_mut()
-            .flatten()
-            .for_each(|x| *x *= factor);
+        mesh.positions.iter_mut().flatten().for_each(|x| *x *= factor);
         mesh
     }
 

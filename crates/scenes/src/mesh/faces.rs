@@ -266,9 +266,7 @@ fn ply_head(bytes: &[u8]) -> Result<(Form, Vec<Element>, &[u8]), String> {
     let body = body.or(after.strip_prefix(b"\r")).unwrap_or(after);
     let (mut form, mut elements): (_, Vec<Element>) = (None, vec![]);
     for (line, statement) in Lines::new(&bytes[..end]) {
-        let words = words(statement)
-            .take(MAX_WORDS)
-            .map(String::from_utf8_lossy);
+        let words = words(statement).take(MAX_WORDS).map(String::from_utf8_lossy);
         let words: Vec<_> = words.collect();
         let words: Vec<_> = words.iter().map(|word| &**word).collect();
         let wrong = |why: &str| format!("line {line}: {why}");
@@ -278,9 +276,7 @@ fn ply_head(bytes: &[u8]) -> Result<(Form, Vec<Element>, &[u8]), String> {
             ["format", "binary_big_endian", ..] => form = Some(Form::Big),
             ["element", name, count] => elements.push(Element {
                 name: name.into(),
-                count: count
-                    .parse()
-                    .map_err(|_| wrong("a count is a whole number"))?,
+                count: count.parse().map_err(|_| wrong("a count is a whole number"))?,
                 properties: vec![],
             }),
             ["property", ref of @ ..] => {

@@ -157,10 +157,7 @@ impl Cutter {
     fn project(&mut self, axis: usize, is_up: bool) {
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
         let (u, v) = if is_up { (next, last) } else { (last, next) };
-        let flat = |place: &Triple| Coord {
-            x: place[u],
-            y: place[v],
-        };
+        let flat = |place: &Triple| Coord { x: place[u], y: place[v] };
         self.corners.clear();
         self.corners.extend(self.places.iter().map(flat));
     }

@@ -66,11 +66,7 @@ impl Numbered {
         refuse!(if self.tetrahedra.len() == MAX_TETRAHEDRA =>
             "there are more than {MAX_TETRAHEDRA} tetrahedra");
         let corners = [a, b, c, d];
-        self.tetrahedra.push(Tetrahedron {
-            number,
-            corners,
-            line,
-        });
+        self.tetrahedra.push(Tetrahedron { number, corners, line });
         Ok(())
     }
 
@@ -89,12 +85,7 @@ impl Numbered {
         };
         let (mut tetrahedra, mut tetrahedron_numbers) = (vec![], vec![]);
         let mut seen = HashSet::new();
-        for Tetrahedron {
-            number,
-            corners,
-            line,
-        } in &self.tetrahedra
-        {
+        for Tetrahedron { number, corners, line } in &self.tetrahedra {
             let [a, b, c, d] = corners.map(|corner| find(corner, *line));
             let corners = [a?, b?, c?, d?];
             // Gmsh writes an element twice that is in two groups.
@@ -140,10 +131,7 @@ const MAX_WORDS: usize = 64;
 fn whole(words: &[&str]) -> Result<Vec<u64>, String> {
     let brief = |word: &str| word.chars().take(40).collect::<String>();
     let wrong = |word: &str| format!("`{}` is no whole number", brief(word));
-    words
-        .iter()
-        .map(|word| word.parse().map_err(|_| wrong(word)))
-        .collect()
+    words.iter().map(|word| word.parse().map_err(|_| wrong(word))).collect()
 }
 
 /// Reads the three coordinates at the beginning of some words.
@@ -239,11 +227,7 @@ const NO_FORMAT: &str = "it is no Gmsh file: one begins with $MeshFormat";
 /// Reads the mesh of a file of Gmsh.
 pub(super) fn gmsh(bytes: &[u8]) -> Result<Mesh, String> {
     let (lines, numbered) = (Box::new(lines(bytes)), Numbered::default());
-    let mut reader = Reader {
-        lines,
-        line: 0,
-        numbered,
-    };
+    let mut reader = Reader { lines, line: 0, numbered };
     // Whether the version is 4.1 and not 2.2, once it is known.
     let mut is_new = None;
     while let Some((line, words)) = reader.lines.next() {
@@ -334,8 +318,7 @@ impl<'a> Reader<'a> {
                 // Tags, which may be negative, come before the corners.
                 let first = usize::try_from(head[2].saturating_add(3)).unwrap_or(usize::MAX);
                 let corners = whole(words.get(first..).unwrap_or_default())?;
-                self.numbered
-                    .add_tetrahedron(head[0], &corners, self.line)?;
+                self.numbered.add_tetrahedron(head[0], &corners, self.line)?;
             }
         }
         Ok(())
@@ -363,8 +346,7 @@ impl<'a> Reader<'a> {
             for _ in 0..head[3] {
                 let numbers = self.numbers("$Elements", 1)?;
                 if is_tetrahedron {
-                    self.numbered
-                        .add_tetrahedron(numbers[0], &numbers[1..], self.line)?;
+                    self.numbered.add_tetrahedron(numbers[0], &numbers[1..], self.line)?;
                 }
             }
         }

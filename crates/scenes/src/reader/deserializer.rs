@@ -70,9 +70,9 @@ impl<'de> Deserializer<'de> for Value<'de> {
         let found = self.found()?;
         let number = match found {
             Found::Whole(digits, 10) | Found::Real(digits) => digits.parse().ok(),
-            Found::Whole(digits, radix) => i64::from_str_radix(digits, radix)
-                .ok()
-                .map(|number| number as f64),
+            Found::Whole(digits, radix) => {
+                i64::from_str_radix(digits, radix).ok().map(|number| number as f64)
+            }
             _ => None,
         };
         match number {
@@ -106,20 +106,16 @@ impl<'de> Deserializer<'de> for Value<'de> {
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
-        if self.is_null() {
-            visitor.visit_none()
-        } else {
-            visitor.visit_some(self)
-        }
+        if self.is_null() { visitor.visit_none() } else { visitor.visit_some(self) }
     }
 
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
         match self.found()? {
             Found::List(items) => visitor.visit_seq(Items::new(items)),
             other => Err(match self.in_list().filter(|_| self.is_table()) {
-                Some(advice) => self.fault(format!(
-                    "it must be a list of tables, not a table: {advice}"
-                )),
+                Some(advice) => {
+                    self.fault(format!("it must be a list of tables, not a table: {advice}"))
+                }
                 None => self.wrong("a list in square brackets", &other),
             }),
         }
@@ -305,8 +301,7 @@ impl<'de> de::MapAccess<'de> for Entries<'de> {
         };
         let key: StrDeserializer<'_, Fault> = key.as_ref().into_deserializer();
         let read = seed.deserialize(key);
-        read.map(Some)
-            .map_err(|fault| fault.at(|| line(self.text, *at)))
+        read.map(Some).map_err(|fault| fault.at(|| line(self.text, *at)))
     }
 
     fn next_value_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<S::Value, Fault> {

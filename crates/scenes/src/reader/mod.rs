@@ -60,15 +60,9 @@ impl Places {
     /// Collects the places of the keys of a table, and of the tables in it down to a level.
     fn of(whole: &Value, levels: usize) -> Result<Self, Fault> {
         let ends = whole.text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
-        let mut walk = Walk {
-            ends: ends.map(|(at, _)| at).collect(),
-            lines: BTreeMap::new(),
-        };
+        let mut walk = Walk { ends: ends.map(|(at, _)| at).collect(), lines: BTreeMap::new() };
         walk.add("", whole, levels)?;
-        Ok(Self {
-            lines: walk.lines,
-            names: &[],
-        })
+        Ok(Self { lines: walk.lines, names: &[] })
     }
 
     /// Sets the prefixes of keys of the description, and those that the text has in their place.
@@ -79,10 +73,7 @@ impl Places {
     /// Forgets the lines, for a text that was generated and that the user has not seen.
     #[must_use]
     pub fn without_lines(self) -> Self {
-        Self {
-            lines: BTreeMap::new(),
-            ..self
-        }
+        Self { lines: BTreeMap::new(), ..self }
     }
 
     /// Adds the line to a fault, and rewrites its key as in the text. The line is that of the

@@ -53,29 +53,17 @@ pub(super) struct Entry<'a> {
 impl<'a> Value<'a> {
     /// Creates the value of a whole text in TOML.
     pub fn of_toml(text: &'a str, whole: &'a DeValue<'a>) -> Self {
-        Self {
-            text,
-            node: Node::Toml(whole),
-            span: 0..0,
-        }
+        Self { text, node: Node::Toml(whole), span: 0..0 }
     }
 
     /// Creates the value of a part of a text in JSON.
     pub fn of_json(text: &'a str, part: &'a str) -> Self {
         let start = part.as_ptr() as usize - text.as_ptr() as usize;
-        Self {
-            text,
-            node: Node::Json(part),
-            span: start..start + part.len(),
-        }
+        Self { text, node: Node::Json(part), span: start..start + part.len() }
     }
 
     fn spanned(text: &'a str, spanned: &'a Spanned<DeValue<'a>>) -> Self {
-        Self {
-            text,
-            node: Node::Toml(spanned.get_ref()),
-            span: spanned.span(),
-        }
+        Self { text, node: Node::Toml(spanned.get_ref()), span: spanned.span() }
     }
 
     /// Returns the byte at which it begins.

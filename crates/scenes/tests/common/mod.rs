@@ -5,11 +5,7 @@ use a3_core::{Control, Scene, Simulation, integrators};
 
 /// Reads a file of the seeds of the fuzzer.
 pub fn seed(name: &str) -> Vec<u8> {
-    std::fs::read(format!(
-        "{}/../../../fuzz/seeds/{name}",
-        env!("CARGO_MANIFEST_DIR")
-    ))
-    .unwrap()
+    std::fs::read(format!("{}/../../../fuzz/seeds/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
 /// Begins a run of a scene by a method in steps of h (s).
@@ -20,9 +16,7 @@ pub fn run(scene: Scene, method: &str, h: f64) -> Simulation {
 /// Creates a generator of repeatable numbers from 0 to 1.
 pub fn random(mut seed: u64) -> impl FnMut() -> f64 {
     move || {
-        seed = seed
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 11) as f64 / (1u64 << 53) as f64
     }
 }
@@ -47,12 +41,7 @@ pub fn refused(whole: &str, table: &str, said: impl Fn(&str) -> String) {
             part = plain(line);
             continue;
         };
-        let expected = if expected.is_empty() {
-            lines.next().unwrap()
-        } else {
-            expected
-        }
-        .trim();
+        let expected = if expected.is_empty() { lines.next().unwrap() } else { expected }.trim();
         let text = whole.replacen(&part, &plain(instead), 1);
         assert!(text != whole, "{part}");
         let said = said(&text);

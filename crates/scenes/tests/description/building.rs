@@ -52,11 +52,7 @@ masses = [5, 6]\nsprings = [[0, 1, 3, 1, 0]]
         panic!("the chain's end swings")
     };
     assert_eq!(center, Vector3::new(0.0, 2.0, 0.0));
-    let joins = |i, j| {
-        network
-            .springs()
-            .any(|s| [[i, j], [j, i]].contains(&[s.i, s.j]))
-    };
+    let joins = |i, j| network.springs().any(|s| [[i, j], [j, i]].contains(&[s.i, s.j]));
     assert!(joins(11, 27) && joins(31, 32) && joins(28, 29) && joins(12, 13) && !joins(11, 12));
     let of_corner = network.springs_of(25);
     let across: Vec<_> = of_corner.filter(|s| s.kind == SpringKind::Bend).collect();
@@ -156,11 +152,7 @@ fn strain_is_limited_body_by_body() {
         network.set_strain_limit(20..n, Some(2.0)).unwrap();
     }
     let d = snapshot_of(&text, scene);
-    let limits = [
-        d.cloth[0].strain_limit,
-        d.jelly[0].strain_limit,
-        d.mesh[0].strain_limit,
-    ];
+    let limits = [d.cloth[0].strain_limit, d.jelly[0].strain_limit, d.mesh[0].strain_limit];
     assert_eq!(limits, [Some(1.25), None, Some(2.0)]);
     let said = said(&format!("tear = 1.25\n{limited}"));
     assert!(said.contains("never break at 1.25 times"), "{said}");

@@ -43,10 +43,7 @@ fn links(scene: &Scene, number: impl Fn(usize) -> Option<usize>) -> Vec<[usize; 
 
 fn ball(at: [f64; 3]) -> RigidBody {
     RigidBody {
-        parts: vec![PartSpec {
-            ball: Some(0.2),
-            ..PartSpec::default()
-        }],
+        parts: vec![PartSpec { ball: Some(0.2), ..PartSpec::default() }],
         mass: Some(0.5),
         at: Some(at),
         velocity: Some([1.0, 2.0, 3.0]),
@@ -70,11 +67,8 @@ fn an_edit_leaves_all_else_as_it_was() {
         orientations: rotations.map(|r| [r[0], r[1], r[2], r[3]]).into(),
         angular_momenta: rotations.map(|r| [r[4], r[5], r[6]]).into(),
     });
-    let rope = ConstraintSpec {
-        rope: Some([3, 17]),
-        length: Some(20.0),
-        ..ConstraintSpec::default()
-    };
+    let rope =
+        ConstraintSpec { rope: Some([3, 17]), length: Some(20.0), ..ConstraintSpec::default() };
     // Each with the particles, bodies and links that come or go.
     let (position, mass) = ([0.0, 4.0, 0.0], 0.7);
     let edits = [

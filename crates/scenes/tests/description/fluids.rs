@@ -185,10 +185,7 @@ at = [2, -0.1875, 0]
 fn a_flow_may_have_begun_before() {
     let ahead = FILLED.replacen("duration = 1 }", "duration = 1, ahead = 0.4 }", 1);
     let swing = "[swing]\namplitude = [0.1, 0, 0]\nrate = 3\n";
-    for text in [
-        ahead.clone(),
-        ahead.replacen("[[fluid]]", &format!("{swing}[[fluid]]"), 1),
-    ] {
+    for text in [ahead.clone(), ahead.replacen("[[fluid]]", &format!("{swing}[[fluid]]"), 1)] {
         let scene = set_up(&text).unwrap().scene;
         let n = scene.model.particles();
         let network = scene.model.network().unwrap();

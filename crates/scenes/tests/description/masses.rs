@@ -70,10 +70,9 @@ fn a_jelly_and_a_solid_weigh_their_density_times_their_volume() {
         let size = [1.2, 0.2, 0.3].map(|edge| edge * unit);
         let weight = 1100.0 * size.iter().product::<f64>();
         for grid in [[2, 2, 2], [3, 2, 4], [9, 5, 6]] {
-            for matter in [
-                "[[jelly]]\nstiffness = [9, 9, 9]",
-                "[[solid]]\nyoung = 1e5\npoisson = 0.3",
-            ] {
+            for matter in
+                ["[[jelly]]\nstiffness = [9, 9, 9]", "[[solid]]\nyoung = 1e5\npoisson = 0.3"]
+            {
                 let place = format!("grid = {grid:?}\nsize = {size:?}\nat = [1, 2, 3]");
                 assert_weight(&format!("{matter}\n{place}\ndensity = 1100\n"), weight);
             }
@@ -92,9 +91,7 @@ fn a_mesh_weighs_its_density_times_its_area() {
             )
         };
         assert_weight(&text("square.obj"), 0.3 * unit * unit);
-        let setup = read(&text("ball.obj"))
-            .build(None, &mut |_| Ok(ball()))
-            .unwrap();
+        let setup = read(&text("ball.obj")).build(None, &mut |_| Ok(ball())).unwrap();
         let weight: f64 = network(&setup.scene).masses().iter().sum();
         let sphere = 0.3 * 4.0 * PI * unit * unit;
         assert!(weight < sphere && weight > 0.99 * sphere, "{weight}");
@@ -130,10 +127,8 @@ fn a_rigid_body_weighs_its_density_times_its_volume() {
         let [a, b, c] = [0.5, 0.2, 0.3].map(|edge| edge * unit);
         let (r, l) = (0.2 * unit, 0.7 * unit);
         let (cuboid, round) = (0.03 * cube, 4.0 / 3.0 * PI * 0.008 * cube);
-        let [cuboid_part, ball_part] = [
-            format!("{{ box = [{a}, {b}, {c}] }}"),
-            format!("{{ ball = {r}, at = [{l}, 0, 0] }}"),
-        ];
+        let [cuboid_part, ball_part] =
+            [format!("{{ box = [{a}, {b}, {c}] }}"), format!("{{ ball = {r}, at = [{l}, 0, 0] }}")];
         let capsule = format!("{{ capsule = [{l}, {r}], rotation = [1, 0, 2] }}");
         for (parts, volume) in [
             (format!("{cuboid_part}, {ball_part}"), cuboid + round),

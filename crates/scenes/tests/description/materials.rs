@@ -11,11 +11,7 @@ fn a_fabric_gives_the_keys_of_a_cloth_that_are_not_there() {
     let cloth = read(DENIM).cloth.remove(0);
     assert_eq!(cloth.density, Some(0.324));
     assert_eq!(cloth.stiffness, [610.0, 53.4, 0.0]);
-    let Some(BucklingSpec {
-        bending,
-        compression,
-    }) = cloth.buckling
-    else {
+    let Some(BucklingSpec { bending, compression }) = cloth.buckling else {
         panic!("it does not buckle");
     };
     assert!((bending / (80.6e-6 * 0.05) - 1.0).abs() < 1e-12);

@@ -14,9 +14,7 @@ fn build(description: &Description) -> Scene {
 fn assert_same_places(own: &Scene, other: &Scene, places: &[Vec<(usize, f64)>]) {
     let [n, m] = [own, other].map(|scene| scene.model.particles());
     for (i, axis) in (0..n).flat_map(|i| [0, 1, 2].map(|axis| (i, axis))) {
-        let there = places[i]
-            .iter()
-            .map(|(k, weight)| weight * other.state[axis * m + k]);
+        let there = places[i].iter().map(|(k, weight)| weight * other.state[axis * m + k]);
         let (here, there) = (own.state[axis * n + i], there.sum::<f64>());
         assert!((here - there).abs() < 1e-12, "{i} {axis}");
     }
@@ -74,11 +72,7 @@ fn a_finer_fluid_fills_the_same_box_and_tank() {
 #[test]
 fn numbers_of_particles_keep_the_grid() {
     for more in ["torn = [[0, 1]]\n", "[[pin]]\nparticles = [0]\n"] {
-        let [first, last] = if more.starts_with('[') {
-            [CLOTH, more]
-        } else {
-            [more, CLOTH]
-        };
+        let [first, last] = if more.starts_with('[') { [CLOTH, more] } else { [more, CLOTH] };
         let text = format!("{first}{last}");
         let scene = Description::parse(&text).unwrap();
         assert!(regridded(&scene, 2.0, 176).is_err(), "{more}");

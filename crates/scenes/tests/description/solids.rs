@@ -150,9 +150,7 @@ $MeshFormat
 #[test]
 fn what_is_wrong_with_a_file_is_said() {
     let whole = String::from_utf8(seed("msh/two.msh")).unwrap();
-    refused(&whole, WRONG_FILE, |text| {
-        Mesh::from_gmsh(text.as_bytes()).unwrap_err()
-    });
+    refused(&whole, WRONG_FILE, |text| Mesh::from_gmsh(text.as_bytes()).unwrap_err());
     for end in (0..whole.len()).step_by(7) {
         let cut = &whole.as_bytes()[..end];
         assert!(end + 14 > whole.len() || Mesh::from_gmsh(cut).is_err());

@@ -155,11 +155,7 @@ fn crowds_of_points_are_welded_at_once() {
     let mut random = random(1);
     positions.extend((0..100_000).map(|_| [random(), random(), random()].map(|x| 4.0 * x)));
     let triangles = (0..positions.len() as u32 / 3).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
-    let mesh = Mesh {
-        triangles: triangles.collect(),
-        positions,
-        ..Mesh::default()
-    };
+    let mesh = Mesh { triangles: triangles.collect(), positions, ..Mesh::default() };
     // Each point is kept or within the tolerance, 1 m, of one that is kept. At most a hundred fit.
     let welded = mesh.welded().positions.len();
     assert!((5..150).contains(&welded), "{welded}");

@@ -51,9 +51,7 @@ fn triangle() -> Value {
     add(&floats(&inverse));
     // The same corners in bytes and in fractions of 32767.
     add(&[0, 0, 0, 0, 100, 0, 0, 0, 0, 100, 0, 0]);
-    add(&[0u16, 0, 0, 0, 32767, 0, 0, 0, 0, 32767, 0, 0]
-        .map(u16::to_le_bytes)
-        .concat());
+    add(&[0u16, 0, 0, 0, 32767, 0, 0, 0, 0, 32767, 0, 0].map(u16::to_le_bytes).concat());
     views[7]["byteStride"] = 4.into();
     views[8]["byteStride"] = 8.into();
     let uri = base64::engine::general_purpose::STANDARD.encode(&bytes);

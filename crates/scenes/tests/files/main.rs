@@ -36,8 +36,7 @@ fn vector_area(mesh: &Mesh) -> [f64; 3] {
 /// Returns the sum of the areas of the triangles.
 fn area(mesh: &Mesh) -> f64 {
     let all = mesh.triangles.iter().map(|t| half_cross(mesh, t));
-    all.map(|n| n.iter().map(|x| x * x).sum::<f64>().sqrt())
-        .sum()
+    all.map(|n| n.iter().map(|x| x * x).sum::<f64>().sqrt()).sum()
 }
 
 fn half_cross(mesh: &Mesh, t: &[u32; 3]) -> [f64; 3] {

@@ -7,14 +7,8 @@ use a3_scenes::Mesh;
 use crate::{area, counts, refused, vector_area};
 
 /// Sides of a cube, by their corners.
-const SIDES: [[usize; 4]; 6] = [
-    [0, 2, 3, 1],
-    [4, 5, 7, 6],
-    [0, 1, 5, 4],
-    [2, 6, 7, 3],
-    [0, 4, 6, 2],
-    [1, 3, 7, 5],
-];
+const SIDES: [[usize; 4]; 6] =
+    [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
 fn corner(k: usize) -> [f32; 3] {
     [0, 1, 2].map(|axis| (k >> axis & 1) as f32)
@@ -22,9 +16,7 @@ fn corner(k: usize) -> [f32; 3] {
 
 /// Lists the triangles of the cube.
 fn triangles() -> Vec<[[f32; 3]; 3]> {
-    let halves = SIDES
-        .iter()
-        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    let halves = SIDES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
     halves.map(|t| t.map(corner)).collect()
 }
 
@@ -56,11 +48,7 @@ fn stl_is_text_or_binary() {
         text += "  endloop\n endfacet\n";
     }
     text += "endsolid a cube\n";
-    for text in [
-        text.clone(),
-        text.replace('\n', "\r\n"),
-        format!("\u{feff}{text}"),
-    ] {
+    for text in [text.clone(), text.replace('\n', "\r\n"), format!("\u{feff}{text}")] {
         is_cube(&Mesh::from_stl(text.as_bytes()).unwrap());
     }
     let binary = binary_stl(b"made by hand");
@@ -148,7 +136,5 @@ fn ply_is_text_or_binary_of_either_order() {
         let why = Mesh::from_ply(&bytes[..bytes.len() - 1]).unwrap_err();
         assert_eq!(why, "face 5, counted from 0: the file ends within it");
     }
-    refused(&text, WRONG_PLY, |text| {
-        Mesh::from_ply(text.as_bytes()).unwrap_err()
-    });
+    refused(&text, WRONG_PLY, |text| Mesh::from_ply(text.as_bytes()).unwrap_err());
 }

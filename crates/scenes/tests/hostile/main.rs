@@ -49,9 +49,7 @@ fn no_file(name: &str) -> Result<Vec<u8>, String> {
 }
 
 fn mesh(name: &str) -> Result<Mesh, String> {
-    let [solid, square] = &seeds("obj")[..] else {
-        panic!("other seeds")
-    };
+    let [solid, square] = &seeds("obj")[..] else { panic!("other seeds") };
     match name {
         "solid.obj" => Mesh::from_obj(solid),
         "square.obj" => Mesh::from_obj(square),
@@ -119,23 +117,15 @@ fn gltf_files_are_taken_or_refused() {
         "square.bin" => Ok(buffer.clone()),
         other => no_file(other),
     };
-    feed(&seeds("gltf"), |bytes| {
-        is_mesh(Mesh::from_gltf(bytes, &mut file))
-    });
+    feed(&seeds("gltf"), |bytes| is_mesh(Mesh::from_gltf(bytes, &mut file)));
 }
 
 #[test]
 fn files_of_gmsh_and_tetgen_are_taken_or_refused() {
     feed(&seeds("msh"), |bytes| is_mesh(Mesh::from_gmsh(bytes)));
-    let [ele, node] = &seeds("ele")[..] else {
-        panic!("other seeds")
-    };
-    feed(std::slice::from_ref(ele), |bytes| {
-        is_mesh(Mesh::from_tetgen(node, bytes))
-    });
-    feed(std::slice::from_ref(node), |bytes| {
-        is_mesh(Mesh::from_tetgen(bytes, ele))
-    });
+    let [ele, node] = &seeds("ele")[..] else { panic!("other seeds") };
+    feed(std::slice::from_ref(ele), |bytes| is_mesh(Mesh::from_tetgen(node, bytes)));
+    feed(std::slice::from_ref(node), |bytes| is_mesh(Mesh::from_tetgen(bytes, ele)));
 }
 
 /// Whether there is a mesh. Asserts that it is complete.
@@ -175,10 +165,7 @@ fn what_is_too_much_is_refused() {
         assert!(memory[0] < MOST[0], "{expected}: {memory:?}");
     };
     let many = "4000000000";
-    let (nodes, blocks) = (
-        "$Nodes\nmany\n1 0 0 0\n",
-        "$Nodes\nmany many 1 1\n0 0 0 many\n",
-    );
+    let (nodes, blocks) = ("$Nodes\nmany\n1 0 0 0\n", "$Nodes\nmany many 1 1\n0 0 0 many\n");
     let elements = "$Elements\nmany 1 1 1\n3 0 4 many\n1 2";
     let gmsh = |version: &str, rest: &str| {
         format!("$MeshFormat\n{version} 8\n{}", rest.replace("many", many))
@@ -199,9 +186,7 @@ fn what_is_too_much_is_refused() {
         refused(expected, &mut || Mesh::from_ply(text.as_bytes()));
     }
     let long = format!("{many} 3 0 0\n0 1 2 3\n");
-    refused("ends before all", &mut || {
-        Mesh::from_tetgen(long.as_bytes(), b"0 4")
-    });
+    refused("ends before all", &mut || Mesh::from_tetgen(long.as_bytes(), b"0 4"));
     for (name, expected) in [("g_dag", "two parents"), ("g_sparse", "more than")] {
         let bytes = seed(&format!("gltf/{name}.gltf"));
         refused(expected, &mut || Mesh::from_gltf(&bytes, &mut no_file));

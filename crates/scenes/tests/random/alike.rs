@@ -80,10 +80,7 @@ fn shaken(setup: &Setup, seed: u64) -> Setup {
 /// Returns the largest distance between particles of two looks, and the particle.
 fn apart(a: &[Vector3<f64>], b: &[Vector3<f64>]) -> (f64, usize) {
     let all = a.iter().zip(b).map(|(a, b)| (a - b).norm()).enumerate();
-    all.fold(
-        (0.0, 0),
-        |most, (i, d)| if d > most.0 { (d, i) } else { most },
-    )
+    all.fold((0.0, 0), |most, (i, d)| if d > most.0 { (d, i) } else { most })
 }
 
 /// Returns the number of the particle in the other frame for each one: the same where that begins
@@ -136,12 +133,7 @@ impl<'a> Known<'a> {
     pub fn new(setup: &'a Setup, method: &'static Method) -> Option<Self> {
         let looks = watch(setup, method).ok()?;
         let growth = vec![CHANGE * setup.scene.extent().1; looks.len()];
-        let mut known = Self {
-            setup,
-            method,
-            looks,
-            growth,
-        };
+        let mut known = Self { setup, method, looks, growth };
         known.shake(SEEDS[0].clone());
         Some(known)
     }
@@ -152,9 +144,9 @@ impl<'a> Known<'a> {
             let shaken = watch(&shaken(self.setup, seed), self.method).unwrap_or_default();
             let mut most = 0.0f64;
             for (k, growth) in self.growth.iter_mut().enumerate() {
-                let effect = shaken.get(k).map_or(f64::INFINITY, |(_, places)| {
-                    apart(&self.looks[k].1, places).0
-                });
+                let effect = shaken
+                    .get(k)
+                    .map_or(f64::INFINITY, |(_, places)| apart(&self.looks[k].1, places).0);
                 most = most.max(effect);
                 *growth = growth.max(most);
             }

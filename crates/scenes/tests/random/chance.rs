@@ -32,11 +32,7 @@ impl Chance {
     /// Returns a number of a range.
     pub fn within(&mut self, (low, high, spread): Range) -> f64 {
         let share = self.share();
-        if spread {
-            low * (high / low).powf(share)
-        } else {
-            low + (high - low) * share
-        }
+        if spread { low * (high / low).powf(share) } else { low + (high - low) * share }
     }
 
     /// Returns three numbers of a range.
@@ -60,11 +56,7 @@ impl Chance {
         let a = self.direction();
         loop {
             let [x, y, z] = self.direction();
-            let b = [
-                a[1] * z - a[2] * y,
-                a[2] * x - a[0] * z,
-                a[0] * y - a[1] * x,
-            ];
+            let b = [a[1] * z - a[2] * y, a[2] * x - a[0] * z, a[0] * y - a[1] * x];
             let length = b.iter().map(|x| x * x).sum::<f64>().sqrt();
             if length > 0.1 {
                 return [a, b.map(|x| x / length)];

@@ -65,11 +65,7 @@ fn course(
         Some(Cause::Gained { energy, .. }) => Some(energy),
         _ => run.gained().map(|gain| gain.energy),
     };
-    Some(Course {
-        energies,
-        alarm,
-        is_lost: lost.is_some(),
-    })
+    Some(Course { energies, alarm, is_lost: lost.is_some() })
 }
 
 /// Returns the largest exchange between kinds of energy in a course (J).

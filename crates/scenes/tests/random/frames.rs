@@ -89,11 +89,7 @@ impl Frame {
     pub fn suits(&self, scene: &Value) -> bool {
         let has = |key: &str| !scene[key].is_null();
         let text = scene.to_string();
-        let says = |words: &[&str]| {
-            words
-                .iter()
-                .any(|word| text.contains(&format!("\"{word}\"")))
-        };
+        let says = |words: &[&str]| words.iter().any(|word| text.contains(&format!("\"{word}\"")));
         // Boxes of a fluid are along the axes.
         let is_half = self.turn == 0.0 || self.turn == PI;
         if has("circle") || !is_half && has("fluid") {

@@ -43,11 +43,7 @@ impl Grammar {
     /// Returns a random table for a key of the scene, or for the scene itself if the key is empty,
     /// and the keys in it.
     pub fn table(&self, key: &str, chance: &mut Chance) -> (Value, BTreeSet<String>) {
-        let mut writer = Writer {
-            grammar: self,
-            chance,
-            keys: BTreeSet::new(),
-        };
+        let mut writer = Writer { grammar: self, chance, keys: BTreeSet::new() };
         let value = if key.is_empty() {
             writer.table("", "", &self.schema)
         } else {
@@ -94,10 +90,7 @@ impl Writer<'_> {
         let required: Vec<_> = required.into_iter().flatten().collect();
         let is_required = |key: &&str| required.iter().any(|r| *r == *key);
         let mut is_there = |key: &&str| is_required(key) || self.is_there(name, key);
-        let mut keys: Vec<_> = all()
-            .map(String::as_str)
-            .filter(|key| is_there(key))
-            .collect();
+        let mut keys: Vec<_> = all().map(String::as_str).filter(|key| is_there(key)).collect();
         // A circle is alone.
         if name.is_empty() && self.chance.once_in(60) {
             keys.retain(|key| !BODIES.contains(key));

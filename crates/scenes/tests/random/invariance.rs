@@ -67,9 +67,7 @@ fn build(scene: &Value) -> Result<Setup, String> {
 /// Lists the built-in scenes and those of the documentation.
 fn known() -> Vec<Named> {
     let read = |name: &str, text: &str| (name.to_owned(), toml::from_str(text).unwrap());
-    let files = std::fs::read_dir(DOCS)
-        .unwrap()
-        .map(|file| file.unwrap().path());
+    let files = std::fs::read_dir(DOCS).unwrap().map(|file| file.unwrap().path());
     let scenes = files.filter(|it| it.extension().is_some_and(|e| e == "toml"));
     let mut files: Vec<_> = scenes.collect();
     files.sort();

@@ -161,10 +161,8 @@ fn work(next: impl Fn() -> Option<usize>, trial: &Mutex<Trial>, results: &Mutex<
     let grammar = Grammar::new();
     let begun = Instant::now();
     while let Some(k) = next() {
-        *trial.lock().unwrap() = Trial {
-            since: Some(Instant::now()),
-            text: format!("# scene {k}"),
-        };
+        *trial.lock().unwrap() =
+            Trial { since: Some(Instant::now()), text: format!("# scene {k}") };
         let before = time_taken(begun);
         let tried = catch_unwind(AssertUnwindSafe(|| try_scene(k, &grammar, trial, results)));
         let took = time_taken(begun).saturating_sub(before);

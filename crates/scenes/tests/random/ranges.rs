@@ -56,10 +56,7 @@ pub const NUMBERS: &[(&[&str], Range)] = &[
     (&["drag_per_mass"], DAMPING),
     (&["strain_limit"], (1.01, 1.5, true)),
     (&["tear", "reach"], (1.05, 4.0, true)),
-    (
-        &["gravity", "force", "force_per_mass"],
-        (-20.0, 20.0, false),
-    ),
+    (&["gravity", "force", "force_per_mass"], (-20.0, 20.0, false)),
     (&["rate", "feedback"], (0.1, 50.0, true)),
     (&["sound"], (1.0, 50.0, true)),
     (&["end", "duration"], (1.01, 2.0, true)),
@@ -126,10 +123,8 @@ pub const ALTERNATIVES: &[&[&str]] = &[
 ];
 
 /// Keys that a table has if and only if it has another one.
-pub const TOGETHER: &[(&str, &str, &str)] = &[
-    ("Solid", "size", "grid"),
-    ("ConstraintSpec", "particle", "point line circle sphere"),
-];
+pub const TOGETHER: &[(&str, &str, &str)] =
+    &[("Solid", "size", "grid"), ("ConstraintSpec", "particle", "point line circle sphere")];
 
 /// Keys that a table has only if it has another one.
 pub const NEEDS: &[(&str, &str, &str)] = &[

@@ -28,9 +28,7 @@ pub enum Ended {
 
 /// Whether anything does work on a scene except its own forces.
 fn is_driven(text: &str) -> bool {
-    "sine shift turn wind torque"
-        .split(' ')
-        .any(|word| text.contains(word))
+    "sine shift turn wind torque".split(' ').any(|word| text.contains(word))
 }
 
 /// Checks that an error is a line, and not a whole file.

@@ -12,12 +12,8 @@ use crate::told;
 const SCENES: usize = 80;
 
 /// Parts of m, kg and s in other units.
-const UNITS: [[f64; 3]; 4] = [
-    [1024.0, 1.0, 1.0],
-    [1.0, 1024.0, 1.0],
-    [1.0, 1.0, 1024.0],
-    [32.0, 0.0625, 1.0],
-];
+const UNITS: [[f64; 3]; 4] =
+    [[1024.0, 1.0, 1.0], [1.0, 1024.0, 1.0], [1.0, 1.0, 1024.0], [32.0, 0.0625, 1.0]];
 
 /// Number of steps, and time where a method has a tolerance (s).
 const STEPS: u64 = 200;

@@ -34,9 +34,7 @@ impl ApplicationHandler<Event> for App {
     fn user_event(&mut self, event_loop: &ActiveEventLoop, event: Event) {
         match event {
             Event::Opened(opened) => {
-                let opened = self
-                    .platform
-                    .finish_opening(opened, &self.screen, &self.session);
+                let opened = self.platform.finish_opening(opened, &self.screen, &self.session);
                 if let Some(graphics) = opened {
                     self.set_graphics(event_loop, graphics);
                     self.last_tick = Instant::now();
@@ -92,9 +90,7 @@ impl ApplicationHandler<Event> for App {
             || !self.is_in_picture();
         if let WindowEvent::MouseInput { state, .. } = event {
             self.session.readings.touch = false;
-            self.session
-                .history
-                .set_button_held(state == ElementState::Pressed);
+            self.session.history.set_button_held(state == ElementState::Pressed);
         }
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
@@ -116,19 +112,11 @@ impl ApplicationHandler<Event> for App {
             WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
                 self.press_key(event_loop, &event);
             }
-            WindowEvent::MouseInput {
-                state: ElementState::Pressed,
-                button,
-                ..
-            } if !taken => {
+            WindowEvent::MouseInput { state: ElementState::Pressed, button, .. } if !taken => {
                 self.press(button, self.modifiers.shift_key());
                 self.screen.redraw();
             }
-            WindowEvent::MouseInput {
-                state: ElementState::Released,
-                button,
-                ..
-            } => {
+            WindowEvent::MouseInput { state: ElementState::Released, button, .. } => {
                 self.release(button);
                 self.screen.redraw();
             }

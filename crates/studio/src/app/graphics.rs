@@ -166,8 +166,7 @@ impl Graphics {
 
     /// Uploads the topology of another scene.
     pub fn set_scene(&mut self, session: &Session) {
-        self.renderer
-            .set_topology(&self.gpu, &session.runs.panes[0].topology());
+        self.renderer.set_topology(&self.gpu, &session.runs.panes[0].topology());
         self.drawn.clear();
     }
 
@@ -252,21 +251,17 @@ impl Graphics {
         };
         let text_view = view(self.config.format);
         if let Some(transfer) = &self.transfer {
-            self.renderer
-                .draw(&mut self.targets.pass(&mut encoder, transfer.picture()));
+            self.renderer.draw(&mut self.targets.pass(&mut encoder, transfer.picture()));
             transfer.copy(&mut encoder, &text_view);
         } else {
-            self.renderer
-                .draw(&mut self.targets.pass(&mut encoder, &view(self.format)));
+            self.renderer.draw(&mut self.targets.pass(&mut encoder, &view(self.format)));
         }
         // egui's renderer panics on a device that has just been lost.
         self.gpu.check()?;
         let more = self.draw_thumbnail(session);
         let (before, again) = self.draw_text(&mut encoder, &text_view, session, cursor);
         let again = if more { Some(Duration::ZERO) } else { again };
-        self.gpu
-            .queue
-            .submit(before.into_iter().chain([encoder.finish()]));
+        self.gpu.queue.submit(before.into_iter().chain([encoder.finish()]));
         self.window.pre_present_notify();
         self.gpu.queue.present(frame);
         self.gpu.check()?;
@@ -310,9 +305,7 @@ impl Graphics {
             layer.drawn(written.1);
             written
         };
-        layer
-            .texture
-            .copy_parts(encoder, view, &self.overlay.filled);
+        layer.texture.copy_parts(encoder, view, &self.overlay.filled);
         self.layer = Some(layer);
         written
     }
@@ -373,10 +366,8 @@ impl Layer {
     /// Creates a layer over a surface, if the adapter needs one.
     pub fn new(gpu: &Gpu, config: &wgpu::SurfaceConfiguration) -> Option<Self> {
         let size = (config.width, config.height);
-        gpu.is_software().then(|| Self {
-            texture: Transfer::layer(gpu, size, config.format),
-            due: None,
-        })
+        gpu.is_software()
+            .then(|| Self { texture: Transfer::layer(gpu, size, config.format), due: None })
     }
 
     /// Returns the time for which the text can be reused, if it can.
@@ -431,9 +422,7 @@ impl Thumbnails {
     /// Returns the pictures by the names of scenes.
     pub fn pictures(&self) -> HashMap<String, TextureId> {
         let pictures = self.drawn.iter();
-        pictures
-            .filter_map(|(name, id)| Some((name.clone(), (*id)?)))
-            .collect()
+        pictures.filter_map(|(name, id)| Some((name.clone(), (*id)?))).collect()
     }
 
     /// Draws the next missing picture of the open list, and returns whether there was one.
@@ -449,9 +438,7 @@ impl Thumbnails {
                 overlay.free(id);
             }
         }
-        let mut missing = list
-            .entries()
-            .filter(|it| !self.drawn.contains_key(&it.name));
+        let mut missing = list.entries().filter(|it| !self.drawn.contains_key(&it.name));
         let Some(entry) = missing.next() else {
             return false;
         };
@@ -478,10 +465,7 @@ impl Thumbnails {
             let next = run.time() + 0.05;
             run.advance_to(next).ok()?;
         }
-        let manner = Manner {
-            dark: self.dark,
-            ..Manner::default()
-        };
+        let manner = Manner { dark: self.dark, ..Manner::default() };
         let mut show = Show::new(setup.presentation, manner);
         show.compose(&run);
         self.renderer.set_topology(gpu, &show.topology(&run));
@@ -489,11 +473,7 @@ impl Thumbnails {
         self.renderer.prepare(gpu, &[(picture, Tile::whole(SIZE))]);
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("thumbnail"),
-            size: wgpu::Extent3d {
-                width: SIZE.0,
-                height: SIZE.1,
-                depth_or_array_layers: 1,
-            },
+            size: wgpu::Extent3d { width: SIZE.0, height: SIZE.1, depth_or_array_layers: 1 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -504,8 +484,7 @@ impl Thumbnails {
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let descriptor = wgpu::CommandEncoderDescriptor::default();
         let mut encoder = gpu.device.create_command_encoder(&descriptor);
-        self.renderer
-            .draw(&mut self.targets.pass(&mut encoder, self.transfer.picture()));
+        self.renderer.draw(&mut self.targets.pass(&mut encoder, self.transfer.picture()));
         self.transfer.copy(&mut encoder, &view);
         gpu.queue.submit([encoder.finish()]);
         Some(overlay.register(gpu, &view))
@@ -516,11 +495,7 @@ impl Thumbnails {
 /// 720 on two cores, an offscreen frame takes 11 ms instead of 43. Lines are smooth even then, and
 /// saved pictures always use several samples.
 pub fn window_samples(gpu: &Gpu, format: wgpu::TextureFormat) -> u32 {
-    if gpu.is_software() {
-        1
-    } else {
-        gpu.samples(format)
-    }
+    if gpu.is_software() { 1 } else { gpu.samples(format) }
 }
 
 /// Returns the size of the window (px), clamped to the limits of the device.
@@ -544,9 +519,7 @@ pub async fn open_adapter(
         let Ok(surface) = instance.create_surface(window.clone()) else {
             continue;
         };
-        result = Gpu::open(instance, Some(&surface))
-            .await
-            .map(|gpu| (gpu, surface));
+        result = Gpu::open(instance, Some(&surface)).await.map(|gpu| (gpu, surface));
         if result.is_ok() {
             break;
         }

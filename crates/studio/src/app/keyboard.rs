@@ -109,10 +109,7 @@ mod tests {
                 assert_eq!(action(&typed), Some(binding.action));
             }
         }
-        assert_eq!(
-            action(&Key::Character(" ".into())),
-            Some(Action::Run(RunAction::Pause))
-        );
+        assert_eq!(action(&Key::Character(" ".into())), Some(Action::Run(RunAction::Pause)));
         assert_eq!(action(&Key::Character("10".into())), None);
         assert_eq!(action(&Key::Character("Tab".into())), None);
         assert_eq!(action(&Key::Named(NamedKey::F5)), None);

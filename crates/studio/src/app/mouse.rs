@@ -110,10 +110,9 @@ impl App {
         let hit = self.hit(pane);
         let particle = hit.and_then(|(target, _)| target.particle());
         let drag = match button {
-            MouseButton::Left | MouseButton::Right if shift => Drag::Select {
-                from: self.mouse.position,
-                pinned: button == MouseButton::Left,
-            },
+            MouseButton::Left | MouseButton::Right if shift => {
+                Drag::Select { from: self.mouse.position, pinned: button == MouseButton::Left }
+            }
             MouseButton::Left if self.session.panel.plotting.is_ruling() => {
                 let end = self.ruler_end(pane);
                 self.session.panel.plotting.begin_end(end);
@@ -196,18 +195,10 @@ impl App {
     pub fn throw(&mut self, pane: usize) {
         let tile = self.screen.tile(&self.session, pane);
         let middle = [tile.x + tile.width / 2, tile.y + tile.height / 2].map(|px| px as f32);
-        let place = if self.is_over_picture() {
-            self.mouse.position
-        } else {
-            middle
-        };
+        let place = if self.is_over_picture() { self.mouse.position } else { middle };
         let aim = self.aim(place, pane);
         let how = Throw {
-            mass: if self.modifiers.shift_key() {
-                HEAVY
-            } else {
-                1.0
-            },
+            mass: if self.modifiers.shift_key() { HEAVY } else { 1.0 },
             ..Throw::default()
         };
         let tool = &mut self.session.panel.editor.tool;
@@ -297,9 +288,8 @@ impl App {
             Drag::Orbit => {
                 // From below, the lines of the floor would lie over the scene.
                 let ground = self.session.runs.panes[pane].show.ground();
-                let lowest = ground.map_or(f32::MIN, |height| {
-                    height as f32 + ABOVE_GROUND * camera.unit()
-                });
+                let lowest =
+                    ground.map_or(f32::MIN, |height| height as f32 + ABOVE_GROUND * camera.unit());
                 camera.orbit_above(-ORBIT_ANGLE * dx * aspect, ORBIT_ANGLE * dy, lowest);
             }
             Drag::Pan => camera.pan(-dx * aspect, dy),

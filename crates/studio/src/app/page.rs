@@ -134,9 +134,7 @@ impl Platform {
 impl Films {
     /// Shows a message: a page makes no films.
     pub fn record(&mut self, session: &mut Session, _: Option<&Graphics>, _: bool) {
-        session
-            .readings
-            .say("Only the program makes films: key y copies the command line for it.");
+        session.readings.say("Only the program makes films: key y copies the command line for it.");
     }
 
     /// Saves the frame that was just drawn, if that was requested. Returns false: no further frame

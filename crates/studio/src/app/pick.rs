@@ -133,9 +133,7 @@ impl Sight<'_> {
     /// Returns where the line of sight ends, above a ground of a height (m) if there is one.
     pub fn aim(&self, ground: Option<f64>) -> Aim {
         let (eye, ahead) = (self.point(0.0), self.point(1.0));
-        let met = self
-            .meet()
-            .map(|(depth, normal)| (self.point(depth), normal));
+        let met = self.meet().map(|(depth, normal)| (self.point(depth), normal));
         let down = (eye - ahead).y;
         let ground = ground.filter(|height| down > 0.0 && eye.y > *height);
         let ground = ground.map(|height| {
@@ -227,11 +225,8 @@ fn depth_in(p: [f32; 2], [a, b, c]: [([f32; 2], f32); 3]) -> Option<f32> {
     };
     let area = cross(a.0, b.0, c.0);
     // Barycentric coordinates.
-    let [u, v, w] = [
-        cross(p, b.0, c.0) / area,
-        cross(a.0, p, c.0) / area,
-        cross(a.0, b.0, p) / area,
-    ];
+    let [u, v, w] =
+        [cross(p, b.0, c.0) / area, cross(a.0, p, c.0) / area, cross(a.0, b.0, p) / area];
     let is_inside = [u, v, w].iter().all(|weight| *weight >= 0.0);
     is_inside.then_some(u * a.1 + v * b.1 + w * c.1)
 }
@@ -251,12 +246,7 @@ mod tests {
         aspect: f32,
         reach: f32,
     ) -> Option<(Target, Grip)> {
-        let sight = Sight {
-            run,
-            camera,
-            at,
-            aspect,
-        };
+        let sight = Sight { run, camera, at, aspect };
         sight.pick(reach)
     }
 
@@ -276,12 +266,7 @@ mod tests {
             let pointer = [at[0] + 0.002, at[1] - 0.002];
             let (picked, grip) = pick(&simulation, &camera, pointer, 1.6, 0.03).unwrap();
             assert_eq!(picked, Target::Particle(i));
-            let sight = Sight {
-                run: &simulation,
-                camera: &camera,
-                at: pointer,
-                aspect: 1.6,
-            };
+            let sight = Sight { run: &simulation, camera: &camera, at: pointer, aspect: 1.6 };
             let target = sight.dragged(grip);
             let off = (simulation.position(i) - target).abs().max();
             assert!(off < 1e-3, "{p:?} {target:?}");
@@ -298,9 +283,7 @@ mod tests {
         for panes in 1..=4 {
             for tile in crate::hud::layout::tiles(panes, (1280, 720), 1.0) {
                 let aspect = tile.aspect();
-                let (at, _) = camera
-                    .project([p.x as f32, p.y as f32, p.z as f32], aspect)
-                    .unwrap();
+                let (at, _) = camera.project([p.x as f32, p.y as f32, p.z as f32], aspect).unwrap();
                 let pointer = [
                     tile.x as f32 + at[0] * tile.width as f32,
                     tile.y as f32 + at[1] * tile.height as f32,
@@ -332,11 +315,7 @@ mod tests {
     /// The nearer one is picked: the sphere from below the cloth, and the cloth from above.
     #[test]
     fn a_sphere_is_picked_unless_cloth_is_in_front() {
-        let scene = a3_scenes::find("mit-sphere")
-            .unwrap()
-            .build(None)
-            .unwrap()
-            .scene;
+        let scene = a3_scenes::find("mit-sphere").unwrap().build(None).unwrap().scene;
         let run =
             Simulation::new(scene, integrators::find("t").unwrap(), Control::Step(0.001)).unwrap();
         let hit = |eye: [f32; 3]| {
@@ -357,14 +336,9 @@ mod tests {
         let run = cloth();
         let camera = Camera::look_at([0.0, 3.0, 9.0], [0.0, 2.5, 0.0]);
         let corners = whole_triangles(&run).nth(300).unwrap();
-        let middle = corners
-            .map(|i| run.position(i as usize))
-            .iter()
-            .sum::<Vector3<f64>>()
-            / 3.0;
-        let (place, _) = camera
-            .project([middle.x as f32, middle.y as f32, middle.z as f32], 1.6)
-            .unwrap();
+        let middle = corners.map(|i| run.position(i as usize)).iter().sum::<Vector3<f64>>() / 3.0;
+        let (place, _) =
+            camera.project([middle.x as f32, middle.y as f32, middle.z as f32], 1.6).unwrap();
         let hit = |run: &Simulation| pick(run, &camera, place, 1.6, 0.0).is_some();
         assert!(hit(&run));
         let mut scene = run.scene().clone();
@@ -382,12 +356,7 @@ mod tests {
         let (run, camera) = (session.runs.first(), &session.view.camera);
         let middle = (run.position(i) + run.position(j)) / 2.0;
         let (place, _) = camera.project(to_f32(middle), 1.6).unwrap();
-        let sight = Sight {
-            run,
-            camera,
-            at: place,
-            aspect: 1.6,
-        };
+        let sight = Sight { run, camera, at: place, aspect: 1.6 };
         sight.link(0.02)
     }
 
@@ -400,10 +369,7 @@ mod tests {
         let rod = all.find_map(|it| Some([it.ends().0, it.ends().1?]));
         let rod = rod.unwrap();
         assert_eq!(between(&rods, rod), Some(rod));
-        let path = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../docs/scenes/linkage.toml"
-        );
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/linkage.toml");
         let linkage = session(&["r", "0.002", "--scene", path]);
         let network = linkage.runs.first().model().network().unwrap();
         let centers = [0, 1].map(|k| network.bodies()[k].center());

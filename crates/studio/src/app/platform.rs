@@ -69,10 +69,7 @@ pub struct Platform {
 impl Platform {
     /// Creates the services, with a watch over `files`, if there are any.
     pub fn new(files: Vec<PathBuf>) -> Self {
-        Self {
-            watch: (!files.is_empty()).then(|| Watch::new(files)),
-            ..Self::default()
-        }
+        Self { watch: (!files.is_empty()).then(|| Watch::new(files)), ..Self::default() }
     }
 
     /// Opens an adapter, and creates the graphics for the window. Returns `None` if there is no
@@ -132,10 +129,7 @@ fn write_picture(session: &mut Session, graphics: Option<&Graphics>) -> Result<S
     let graphics = graphics.ok_or_else(closed)?;
     let (gpu, size) = (&graphics.gpu, graphics.size());
     let offscreen = Offscreen::new(gpu, size).map_err(Failure::run)?;
-    let readings = Readings {
-        no_error: session.readings.no_error,
-        ..Readings::default()
-    };
+    let readings = Readings { no_error: session.readings.no_error, ..Readings::default() };
     let (panes, scale) = (&mut session.runs.panes, graphics.scale());
     let mut studio = Studio::new(gpu, offscreen, panes);
     let pixels = studio.draw(gpu, panes, session.view.camera, scale, &readings)?;
@@ -167,11 +161,7 @@ impl Films {
         }
         let scale = graphics.scale();
         let size = layout::picture_size(session, graphics.size(), scale);
-        let begin = if past {
-            Recorder::of_past
-        } else {
-            Recorder::from_now
-        };
+        let begin = if past { Recorder::of_past } else { Recorder::from_now };
         match begin(&graphics.gpu, session, (size, scale)) {
             Ok(recorder) => self.recorder = Some(recorder),
             Err(why) => session.readings.warn(why.to_string()),

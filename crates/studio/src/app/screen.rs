@@ -27,14 +27,7 @@ pub struct Screen {
 impl Screen {
     /// Creates a screen whose window is not open yet.
     pub fn new(display: OwnedDisplayHandle, zoom: f32) -> Self {
-        Self {
-            display,
-            window: None,
-            graphics: None,
-            zoom,
-            visible: true,
-            devices: 0,
-        }
+        Self { display, window: None, graphics: None, zoom, visible: true, devices: 0 }
     }
 
     /// Requests another frame.

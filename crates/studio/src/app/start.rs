@@ -61,13 +61,7 @@ pub fn spawn(
     super::platform::connect(event_loop.create_proxy());
     prepare(&mut session, opening, settings.as_ref());
     let display = event_loop.owned_display_handle();
-    event_loop.spawn_app(App::new(
-        session,
-        display,
-        opening.status,
-        Platform::default(),
-        settings,
-    ));
+    event_loop.spawn_app(App::new(session, display, opening.status, Platform::default(), settings));
     Ok(())
 }
 

@@ -90,9 +90,7 @@ impl App {
 
     /// Opens the graphics, or starts to.
     pub fn open_graphics(&mut self, event_loop: &ActiveEventLoop) {
-        let opened = self
-            .platform
-            .open_graphics(&mut self.screen, &mut self.session);
+        let opened = self.platform.open_graphics(&mut self.screen, &mut self.session);
         if let Some(graphics) = opened {
             self.set_graphics(event_loop, graphics);
         }
@@ -234,10 +232,7 @@ impl App {
                 let (panes, scene) = (&session.runs.panes, session.runs.first().scene());
                 let table = hud::csv(panes).map_err(Failure::run);
                 let name = &scene.name;
-                said(
-                    "Wrote",
-                    table.and_then(|it| output::write_new("".as_ref(), name, "csv", &it)),
-                )
+                said("Wrote", table.and_then(|it| output::write_new("".as_ref(), name, "csv", &it)))
             }
             WindowAction::WritePlot(file) => said("Wrote", plotting::write_one(session, file)),
             WindowAction::CommandLine => match command_line::of(session, pane) {

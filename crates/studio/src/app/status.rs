@@ -85,9 +85,8 @@ impl Status {
             screen.devices,
         );
         let now = Instant::now();
-        let quiet = self
-            .said
-            .is_some_and(|said| now.duration_since(said) < Duration::from_millis(200));
+        let quiet =
+            self.said.is_some_and(|said| now.duration_since(said) < Duration::from_millis(200));
         // While the runs stand still, no other line would follow.
         let quiet = quiet && session.animated();
         if quiet && state == self.state {
@@ -112,9 +111,7 @@ impl Status {
             each(&|pane| pane.simulation.control().value().to_string()),
             each(&|pane| format!("{:.4}", pane.simulation.time())),
             each(&|pane| (!pane.alive()).to_string()),
-            each(&|pane| pane
-                .error
-                .map_or("-".into(), |error| format!("{error:.3e}"))),
+            each(&|pane| pane.error.map_or("-".into(), |error| format!("{error:.3e}"))),
         ));
         self.state = state;
         self.said = Some(now);

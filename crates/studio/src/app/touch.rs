@@ -90,11 +90,7 @@ impl Fingers {
                 if self.down.is_empty() {
                     self.gesture = Gesture::None;
                 }
-                if was == Gesture::Press {
-                    Effect::Release
-                } else {
-                    Effect::Nothing
-                }
+                if was == Gesture::Press { Effect::Release } else { Effect::Nothing }
             }
             _ => Effect::Nothing,
         }
@@ -171,9 +167,6 @@ mod tests {
         assert!((ratio - 200.0 / 400f32.hypot(40.0)).abs() < 1e-4, "{ratio}");
         let ([x, y], _) = camera.project(point, aspect).unwrap();
         let [wanted_x, wanted_y] = tile.place(middle(to));
-        assert!(
-            (x - wanted_x).abs() < 1e-3 && (y - wanted_y).abs() < 1e-3,
-            "{x} {y}"
-        );
+        assert!((x - wanted_x).abs() < 1e-3 && (y - wanted_y).abs() < 1e-3, "{x} {y}");
     }
 }

@@ -141,10 +141,7 @@ mod tests {
         session.act(RunAction::Panel, 0);
         let mut window = lay_out(&session, [480.0, 360.0], 1.0);
         let taken = layout::insets(&session, (480, 360), 1.0);
-        let row = window
-            .written()
-            .into_iter()
-            .find(|it| it.0 == "strain limit");
+        let row = window.written().into_iter().find(|it| it.0 == "strain limit");
         let at = row.unwrap().1.center();
         let moved = Some(egui::Event::PointerMoved(at));
         for events in [moved, None, None, None] {
@@ -209,10 +206,7 @@ mod tests {
                 frames(&mut session, 0.2);
                 session.read_state();
                 let faults = faults(&session, size, scale);
-                assert!(
-                    faults.is_empty(),
-                    "lesson {lesson}.{step} in {size:?}: {faults:?}"
-                );
+                assert!(faults.is_empty(), "lesson {lesson}.{step} in {size:?}: {faults:?}");
                 let window = lay_out(&session, size, scale);
                 let (picture, whole) = (window.ctx.content_rect(), window.place);
                 let is_large = |part: f32, all: f32| part > 0.4 * all;
@@ -252,14 +246,8 @@ mod tests {
         assert!(said(&session).contains("Pull me with a finger"));
         session.act(RunAction::Help, 0);
         let help = said(&session);
-        assert!(
-            help.contains("Fingers\n") && help.contains("long press"),
-            "{help}"
-        );
-        assert!(
-            !help.contains("Mouse\n") && !help.contains("right click"),
-            "{help}"
-        );
+        assert!(help.contains("Fingers\n") && help.contains("long press"), "{help}");
+        assert!(!help.contains("Mouse\n") && !help.contains("right click"), "{help}");
         session.act(RunAction::Help, 0);
         session.act(RunAction::Lessons, 0);
         apply(&mut session, LessonRequest::Open(2, 0), 0);

@@ -30,12 +30,7 @@ struct Button {
 
 impl Button {
     fn new(face: &str, about: &str, action: impl Into<Action>) -> Self {
-        Self {
-            face: face.into(),
-            about: about.into(),
-            action: action.into(),
-            colour: TEXT,
-        }
+        Self { face: face.into(), about: about.into(), action: action.into(), colour: TEXT }
     }
 
     /// Returns the width of the button (points), if one with a symbol is `least` wide.
@@ -51,11 +46,7 @@ impl Button {
 
     /// Returns the size of the face (points): symbols are larger than words.
     fn size(&self) -> f32 {
-        if self.face.chars().count() == 1 {
-            18.0
-        } else {
-            13.5
-        }
+        if self.face.chars().count() == 1 { 18.0 } else { 13.5 }
     }
 
     /// Draws the button in a rectangle.
@@ -132,16 +123,9 @@ fn contents(ui: &Ui, rect: Rect, session: &Session) {
 
 /// Returns the buttons for the run: reset, back, play or pause, and a step.
 fn running(session: &Session) -> [Button; 4] {
-    let (play, does) = if session.animated() {
-        ("⏸", "Pause (Space)")
-    } else {
-        ("▶", "Play (Space)")
-    };
-    let step = if session.readings.rewound() {
-        "One frame on (.)"
-    } else {
-        "One step (.)"
-    };
+    let (play, does) =
+        if session.animated() { ("⏸", "Pause (Space)") } else { ("▶", "Play (Space)") };
+    let step = if session.readings.rewound() { "One frame on (.)" } else { "One step (.)" };
     [
         Button::new("⟲", "Start again (r)", RunAction::Reset),
         Button::new("⏮", "One frame back (,)", RunAction::Scrub(-1)),
@@ -161,32 +145,17 @@ fn others(session: &Session) -> Vec<Button> {
         _ => "solvers ⏷".into(),
     };
     let live = session.readings.film.as_ref().is_some_and(|film| film.live);
-    let (film, does) = if live {
-        ("⏹", "Stop and write the film (m)")
-    } else {
-        ("⏺", "Film from now on (m)")
-    };
+    let (film, does) =
+        if live { ("⏹", "Stop and write the film (m)") } else { ("⏺", "Film from now on (m)") };
     [
         Button::new(&scene, "Choose a scene (o)", RunAction::Scenes),
         Button::new(&solver, "Choose a solver (e)", RunAction::Solvers),
-        Button::new(
-            "📈",
-            "Measure: chart, limits, choice, parts (q)",
-            RunAction::Measure,
-        ),
+        Button::new("📈", "Measure: chart, limits, choice, parts (q)", RunAction::Measure),
         Button::new("⚙", "Tune and plot (Tab)", RunAction::Panel),
         Button::new("📖", "Lessons (F1)", RunAction::Lessons),
         Button::new("⛶", "Full screen (F11)", WindowAction::FullScreen),
-        Button::new(
-            "🗠",
-            "Plot particles, bodies and springs (F3)",
-            RunAction::Plots,
-        ),
-        Button::new(
-            "⚽",
-            "Throw a ball; with Shift, a heavy one (F4)",
-            WindowAction::Throw,
-        ),
+        Button::new("🗠", "Plot particles, bodies and springs (F3)", RunAction::Plots),
+        Button::new("⚽", "Throw a ball; with Shift, a heavy one (F4)", WindowAction::Throw),
         Button::new("✏", "Throw, add, join, delete (F2)", RunAction::Edit),
         Button::new("⮪", "Undo (z)", WindowAction::Undo),
         Button::new("📷", "Save a picture (p)", WindowAction::Picture),
@@ -195,10 +164,7 @@ fn others(session: &Session) -> Vec<Button> {
     ]
     .into_iter()
     .filter(|button| is_there(session, button.action))
-    .map(|button| Button {
-        colour: colour(session, button.action),
-        ..button
-    })
+    .map(|button| Button { colour: colour(session, button.action), ..button })
     .collect()
 }
 
@@ -303,12 +269,8 @@ mod tests {
     /// Returns a session whose runs are in the middle of their timeline.
     fn rewound() -> Session {
         let mut session = session(&["t", "0.01", "--paused"]);
-        session.readings.timeline = Some(TimelinePosition {
-            share: 0.5,
-            back: 1.5,
-            span: 3.0,
-            blew_up: false,
-        });
+        session.readings.timeline =
+            Some(TimelinePosition { share: 0.5, back: 1.5, span: 3.0, blew_up: false });
         session
     }
 
@@ -322,10 +284,7 @@ mod tests {
                 let apart = places[..k].iter().all(|b| !a.shrink(1.0).intersects(*b));
                 assert!(apart, "{words} in {width}");
             }
-            assert!(
-                words.contains('▶') && words.contains('?'),
-                "{words} in {width}"
-            );
+            assert!(words.contains('▶') && words.contains('?'), "{words} in {width}");
         }
         let mut window = Window::new([1280.0, 720.0]);
         let (words, ..) = draw(&mut window, &session, away);
@@ -347,9 +306,8 @@ mod tests {
             assert_eq!(words.contains('⏭'), width > 500.0, "{words}");
             let middles = places.iter().map(|place| place.center().x);
             let middles: Vec<_> = middles.filter(|x| *x > 0.5 * width).collect();
-            let apart = middles
-                .iter()
-                .filter(|x| middles.iter().any(|y| y - *x > 0.0 && y - *x < 40.0));
+            let apart =
+                middles.iter().filter(|x| middles.iter().any(|y| y - *x > 0.0 && y - *x < 40.0));
             assert_eq!(apart.count(), 0, "{words}");
         }
         // A tiny window has no bar.

@@ -31,11 +31,7 @@ pub struct Sheet<'a> {
 
 impl<'a> Sheet<'a> {
     pub fn new(painter: &'a Painter, room: Rect, figure: &'a Figure) -> Self {
-        Self {
-            painter,
-            room,
-            figure,
-        }
+        Self { painter, room, figure }
     }
 
     /// Returns the place of a point of the sheet.
@@ -197,11 +193,7 @@ fn label(painter: &Painter, at: Pos2, words: &str, look: &Look) {
     let glyph = first.and_then(|row| Some(row.pos.y + row.glyphs.first()?.pos.y));
     let along = look.anchor.part() as f32 * galley.size().x;
     let way = vec2(along, glyph.unwrap_or(0.0));
-    let (way, angle) = if look.turned {
-        (vec2(way.y, -way.x), -FRAC_PI_2)
-    } else {
-        (way, 0.0)
-    };
+    let (way, angle) = if look.turned { (vec2(way.y, -way.x), -FRAC_PI_2) } else { (way, 0.0) };
     let text = TextShape::new(at - way, galley, ink).with_angle(angle);
     // The font has no bold letters: written twice, they are darker.
     if look.bold {

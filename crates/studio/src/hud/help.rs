@@ -20,9 +20,8 @@ const WIDTHS: [f32; 3] = [58.0, 128.0, 190.0];
 /// Shows the help, for one pane or `several`. In a small window it scrolls by the wheel.
 pub fn help(ctx: &Context, several: bool, touch: bool) {
     let window = ctx.content_rect().shrink(MARGIN);
-    let area = Area::new(Id::unique("help"))
-        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-        .show(ctx, |ui| {
+    let area =
+        Area::new(Id::unique("help")).anchor(Align2::CENTER_CENTER, [0.0, 0.0]).show(ctx, |ui| {
             ui.style_mut().interaction.selectable_labels = false;
             sheet(ui, |ui| {
                 // The window less the margins of the sheet.
@@ -81,11 +80,7 @@ fn heading(ui: &mut Ui, words: &str) {
 
 /// Writes what the mouse does, or fingers if they are used.
 fn gestures(ui: &mut Ui, touch: bool) {
-    let (by, gestures) = if touch {
-        ("Fingers", FINGERS)
-    } else {
-        ("Mouse", MOUSE)
-    };
+    let (by, gestures) = if touch { ("Fingers", FINGERS) } else { ("Mouse", MOUSE) };
     heading(ui, by);
     for (gesture, does) in gestures {
         row(ui, [gesture, does], WIDTHS[1], None);
@@ -116,17 +111,12 @@ fn solvers(ui: &mut Ui, several: bool) {
 
 /// Writes a key and its effect. A click asks for its action.
 fn row(ui: &mut Ui, words: [&str; 2], width: f32, action: Option<Action>) {
-    let sense = if action.is_some() {
-        Sense::click()
-    } else {
-        Sense::hover()
-    };
+    let sense = if action.is_some() { Sense::click() } else { Sense::hover() };
     let size = vec2(width + WIDTHS[2], ROW_HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, sense);
     if action.is_some() && response.hovered() {
         let place = rect.expand2(vec2(6.0, 0.0));
-        ui.painter()
-            .rect_filled(place, 4.0, TEXT.gamma_multiply(0.1));
+        ui.painter().rect_filled(place, 4.0, TEXT.gamma_multiply(0.1));
         ui.set_cursor_icon(CursorIcon::PointingHand);
     }
     let y = rect.center().y;
@@ -148,10 +138,7 @@ mod tests {
 
     #[test]
     fn the_help_lists_every_key() {
-        let readings = Readings {
-            help: true,
-            ..Readings::default()
-        };
+        let readings = Readings { help: true, ..Readings::default() };
         let (words, sheets) = read(&[pane("chain", "r", 0.01)], &readings, [1280.0, 720.0]);
         for binding in bindings() {
             assert!(
@@ -162,10 +149,7 @@ mod tests {
         for method in &integrators::METHODS[..10] {
             assert!(words.contains(method.title));
         }
-        assert!(
-            sheets[0].height() < 690.0 && sheets[0].width() < 900.0,
-            "{sheets:?}"
-        );
+        assert!(sheets[0].height() < 690.0 && sheets[0].width() < 900.0, "{sheets:?}");
     }
 
     /// In a small window the help has one column, stays within the window, and scrolls.
@@ -197,18 +181,12 @@ mod tests {
             let last = integrators::METHODS[9].title;
             let first = "pull or push";
             let above = seen(0.0);
-            assert!(
-                above.contains(first) && !above.contains(last),
-                "{size:?} {above}"
-            );
+            assert!(above.contains(first) && !above.contains(last), "{size:?} {above}");
             for _ in 0..60 {
                 seen(-200.0);
             }
             let below = seen(0.0);
-            assert!(
-                below.contains(last) && !below.contains(first),
-                "{size:?} {below}"
-            );
+            assert!(below.contains(last) && !below.contains(first), "{size:?} {below}");
         }
     }
 }

@@ -89,9 +89,7 @@ pub fn tiles(panes: usize, size: (u32, u32), scale: f32) -> Vec<Tile> {
     let count = panes as u32;
     let grids = [(count, 1), (1, count), (2, 2)];
     let lengthiness = |(columns, rows): &(u32, u32)| {
-        (part(room.0, *columns) as f32 / part(room.1, *rows) as f32)
-            .ln()
-            .abs()
+        (part(room.0, *columns) as f32 / part(room.1, *rows) as f32).ln().abs()
     };
     let (columns, rows) = grids
         .into_iter()
@@ -108,12 +106,7 @@ pub fn tiles(panes: usize, size: (u32, u32), scale: f32) -> Vec<Tile> {
         .map(|k| {
             let (x, width) = span(k % columns, room.0, columns);
             let (y, height) = span(k / columns, room.1, rows);
-            Tile {
-                x,
-                y: bar + y,
-                width,
-                height,
-            }
+            Tile { x, y: bar + y, width, height }
         })
         .collect()
 }
@@ -223,10 +216,7 @@ mod tests {
     fn corners(panes: usize, size: (u32, u32)) -> Vec<(bool, bool)> {
         let tiles = tiles(panes, size, 1.0);
         let first = tiles[0];
-        tiles
-            .iter()
-            .map(|t| (t.x > first.x, t.y > first.y))
-            .collect()
+        tiles.iter().map(|t| (t.x > first.x, t.y > first.y)).collect()
     }
 
     #[test]
@@ -237,14 +227,8 @@ mod tests {
         assert_eq!(corners(2, (260, 860)), [(false, false), below]);
         assert_eq!(corners(3, (1280, 720)), [(false, false), right, right]);
         assert_eq!(corners(3, (260, 860)), [(false, false), below, below]);
-        assert_eq!(
-            corners(4, (1280, 720)),
-            [(false, false), right, below, (true, true)]
-        );
-        assert_eq!(
-            corners(4, (260, 860)),
-            [(false, false), below, below, below]
-        );
+        assert_eq!(corners(4, (1280, 720)), [(false, false), right, below, (true, true)]);
+        assert_eq!(corners(4, (260, 860)), [(false, false), below, below, below]);
     }
 
     #[test]
@@ -262,14 +246,7 @@ mod tests {
     #[test]
     fn tiles_fill_the_target_and_do_not_overlap() {
         for panes in 2..=4 {
-            for size in [
-                (1, 1),
-                (2, 9),
-                (64, 48),
-                (333, 777),
-                (1280, 720),
-                (16384, 3),
-            ] {
+            for size in [(1, 1), (2, 9), (64, 48), (333, 777), (1280, 720), (16384, 3)] {
                 for scale in [0.5, 1.0, 2.75] {
                     let tiles = tiles(panes, size, scale);
                     assert_eq!(tiles.len(), panes);

@@ -47,11 +47,7 @@ pub fn legend(ui: &mut Ui, show: &Show) {
     }
     if let Some(arrows) = field.arrows {
         let end = digits(field.scale.end());
-        let words = format!(
-            "arrows: {}, the longest {end}{}",
-            arrows.name(),
-            arrows.unit()
-        );
+        let words = format!("arrows: {}, the longest {end}{}", arrows.name(), arrows.unit());
         ui.label(super::style::faint(words));
     }
     if !show.kinds().is_empty() {
@@ -64,11 +60,7 @@ fn springs(ui: &mut Ui, show: &Show, in_colours: bool) {
     for kind in show.kinds().iter().rev() {
         let ([r, g, b, _], width) = show::kind_look(*kind);
         let (rect, _) = ui.allocate_exact_size(vec2(20.0, 14.0), Sense::hover());
-        let colour = if in_colours {
-            Color32::from(egui::Rgba::from_rgb(r, g, b))
-        } else {
-            FAINT
-        };
+        let colour = if in_colours { Color32::from(egui::Rgba::from_rgb(r, g, b)) } else { FAINT };
         let stroke = Stroke::new(width, colour);
         ui.painter().hline(rect.x_range(), rect.center().y, stroke);
         ui.label(super::style::faint(show::kind_name(*kind)));
@@ -86,11 +78,7 @@ fn draw(ui: &Ui, bar: Rect, dark: bool) {
         let color = if dark { invert_lightness(color) } else { color };
         let x = bar.left() + share * bar.width();
         for y in [bar.top(), bar.bottom()] {
-            mesh.vertices.push(Vertex {
-                pos: Pos2::new(x, y),
-                uv: egui::epaint::WHITE_UV,
-                color,
-            });
+            mesh.vertices.push(Vertex { pos: Pos2::new(x, y), uv: egui::epaint::WHITE_UV, color });
         }
         if k > 0 {
             let last = 2 * k;
@@ -129,17 +117,11 @@ mod tests {
         let springs = said("mit", Style::Springs, None);
         assert!(springs.contains("structural\nshear\nbend\n"), "{springs}");
         let wires = said("mit", Style::Wireframe, Some(Quantity::Strain));
-        assert!(
-            !wires.contains("shear") && wires.contains("strain\n"),
-            "{wires}"
-        );
+        assert!(!wires.contains("shear") && wires.contains("strain\n"), "{wires}");
         let none = said("mit", Style::Shaded, Some(Quantity::Contact));
         assert!(!none.contains("contact\n"), "{none}");
         let both = said("chain", Style::Springs, Some(Quantity::Speed));
-        assert!(
-            both.contains("structural\n") && both.contains("speed\n"),
-            "{both}"
-        );
+        assert!(both.contains("structural\n") && both.contains("speed\n"), "{both}");
         assert!(!both.contains("shear"), "{both}");
     }
 }

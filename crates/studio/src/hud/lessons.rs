@@ -55,17 +55,17 @@ fn show(ui: &mut Ui, inner: Rect, session: &Session) {
     let body = body.with_max_x(inner.right() + MARGINS[0] - 4.0);
     let salt = shown.map(|_| (lessons.chosen, lessons.step));
     ui.scope_builder(UiBuilder::new().max_rect(body), |ui| {
-        ScrollArea::vertical()
-            .id_salt(("lessons", salt))
-            .auto_shrink([false, false])
-            .show(ui, |ui| {
+        ScrollArea::vertical().id_salt(("lessons", salt)).auto_shrink([false, false]).show(
+            ui,
+            |ui| {
                 ui.set_width(inner.width());
                 ui.spacing_mut().item_spacing = vec2(0.0, 0.0);
                 match shown {
                     Some((lesson, shown)) => step(ui, session, lesson, shown, !below),
                     None => contents(ui, lessons),
                 }
-            });
+            },
+        );
     });
     if shown.is_some() {
         let row = inner.with_min_y(inner.bottom() - buttons_height);
@@ -93,9 +93,7 @@ fn heading(ui: &Ui, inner: Rect, lessons: &Lessons) {
     let stroke = Stroke::new(1.8, if response.hovered() { TEXT } else { INK });
     let points = [(7.0, -5.5), (1.5, 0.0), (7.0, 5.5)].map(|(x, y)| at(x) + vec2(0.0, y));
     painter.add(egui::Shape::line(points.to_vec(), stroke));
-    let response = response
-        .on_hover_cursor(CursorIcon::PointingHand)
-        .on_hover_text("All lessons");
+    let response = response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text("All lessons");
     response.asks(LessonRequest::Contents);
 }
 
@@ -181,10 +179,8 @@ pub fn job(words: &str, size: f32, colour: Color32, width: f32) -> LayoutJob {
     job.wrap.max_width = width;
     let line_height = Some((1.36 * size).round());
     let mut add = |part: &str, colour| {
-        let format = TextFormat {
-            line_height,
-            ..TextFormat::simple(FontId::proportional(size), colour)
-        };
+        let format =
+            TextFormat { line_height, ..TextFormat::simple(FontId::proportional(size), colour) };
         job.append(part, 0.0, format);
     };
     for (k, part) in words.split('`').enumerate() {
@@ -228,8 +224,7 @@ fn step(ui: &mut Ui, session: &Session, lesson: &Lesson, shown: &Step, keys: boo
     ui.add_space(14.0);
     let line = ui.cursor().top();
     let left = ui.cursor().left();
-    ui.painter()
-        .hline(left..=left + width, line, Stroke::new(1.0, EDGE));
+    ui.painter().hline(left..=left + width, line, Stroke::new(1.0, EDGE));
     ui.add_space(10.0);
     ui.label(job(&shown.question.words, 14.5, TEXT, width));
     ui.add_space(8.0);
@@ -269,11 +264,8 @@ fn stations(ui: &mut Ui, session: &Session, lesson: &Lesson) {
         };
         let stroke = Stroke::new(1.0, if is_done { INK } else { EDGE });
         painter.circle(middle, 0.42 * size, fill, stroke);
-        let words = if is_done && !is_shown {
-            SAFE.symbol.to_string()
-        } else {
-            (k + 1).to_string()
-        };
+        let words =
+            if is_done && !is_shown { SAFE.symbol.to_string() } else { (k + 1).to_string() };
         write(painter, middle, MIDDLE, words, 13.0, ink);
         response
             .on_hover_cursor(CursorIcon::PointingHand)
@@ -289,8 +281,7 @@ fn card(ui: &mut Ui, words: &str, colour: Color32, size: f32) {
     let galley = ui.painter().layout_job(words);
     let (rect, _) = ui.allocate_exact_size(vec2(width, galley.size().y + 12.0), Sense::hover());
     ui.painter().rect_filled(rect, 5.0, CARD);
-    ui.painter()
-        .galley(rect.min + vec2(10.0, 6.0), galley, colour);
+    ui.painter().galley(rect.min + vec2(10.0, 6.0), galley, colour);
 }
 
 /// Draws the choices.
@@ -392,11 +383,7 @@ fn reply(ui: &mut Ui, given: &Given, step: &Step) {
     let Some((right, words)) = given.right.zip(words_of_reply(given, step)) else {
         return;
     };
-    let (mark, heading) = if right {
-        (SAFE, "That is right.")
-    } else {
-        (WARNING, "Not quite.")
-    };
+    let (mark, heading) = if right { (SAFE, "That is right.") } else { (WARNING, "Not quite.") };
     let width = ui.available_width();
     ui.add_space(6.0);
     ui.label(mark.text(heading));

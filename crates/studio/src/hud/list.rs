@@ -122,8 +122,7 @@ fn row(ui: &mut Ui, entry: &Entry, chosen: bool, picture: Option<(Option<Texture
     if chosen || response.hovered() {
         let alpha = if chosen { 0.16 } else { 0.07 };
         let colour = TEXT.gamma_multiply(alpha);
-        ui.painter()
-            .rect_filled(rect, CornerRadius::same(5), colour);
+        ui.painter().rect_filled(rect, CornerRadius::same(5), colour);
     }
     match picture {
         Some((picture, dark)) => card(ui, rect, entry, picture, dark),

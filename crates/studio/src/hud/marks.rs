@@ -37,11 +37,7 @@ pub fn hint(ctx: &Context, session: &Session) {
     if now - begun > HINT_DURATION {
         return;
     }
-    let by = if readings.touch {
-        "a finger"
-    } else {
-        "the mouse"
-    };
+    let by = if readings.touch { "a finger" } else { "the mouse" };
     let words = match network.bodies().len() {
         0 => format!("Pull me with {by}"),
         1 => format!("Push or pull me with {by}"),
@@ -77,14 +73,11 @@ fn body(ctx: &Context, session: &Session) -> Option<(Rect, Rect)> {
         let reach = body.radius() as f32;
         [right, up, -right, -up].map(|way| [0, 1, 2].map(|k| center[k] + reach * way[k]))
     });
-    let points = particles
-        .map(|i| show::to_f32(run.position(i)))
-        .chain(edges);
+    let points = particles.map(|i| show::to_f32(run.position(i))).chain(edges);
     let seen = points.filter_map(project);
     let places = seen.map(|([x, y], _)| pane.min + vec2(x, y) * pane.size());
-    let body = places.fold(Rect::NOTHING, |body, place| {
-        body.union(Rect::from_min_max(place, place))
-    });
+    let body =
+        places.fold(Rect::NOTHING, |body, place| body.union(Rect::from_min_max(place, place)));
     let room = pane.intersect(ctx.content_rect()).shrink(MARGIN);
     body.intersects(room).then_some((body, room))
 }
@@ -199,12 +192,7 @@ mod tests {
         for scene in ["cloth", "chain", "jelly", "boxes", "mit-sphere"] {
             let mut session = session(&["v", "0.001", "--scene", scene]);
             frames(&mut session, 0.1);
-            for size in [
-                [1280.0, 720.0],
-                [390.0, 780.0],
-                [480.0, 320.0],
-                [800.0, 460.0],
-            ] {
+            for size in [[1280.0, 720.0], [390.0, 780.0], [480.0, 320.0], [800.0, 460.0]] {
                 let focus = layout::focus(1, size);
                 session.view.camera.set_focus(focus);
                 let Some((words, place)) = seen(&session, size, 1.0) else {

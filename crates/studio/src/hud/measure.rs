@@ -142,11 +142,7 @@ fn bar(ui: &Ui, rect: Rect, question: Question, progress: &Progress, stopping: b
     painter.rect_filled(track, 3.5, PROGRESS_TRACK);
     let right = track.left() + progress.share() * track.width();
     painter.rect_filled(track.with_max_x(right), 3.5, INK);
-    let stage = if stopping {
-        "stopping"
-    } else {
-        &progress.stage
-    };
+    let stage = if stopping { "stopping" } else { &progress.stage };
     let (words, at) = (format!("{}  {stage}", question.words()), rect.left_top());
     write(painter, at, Align2::LEFT_TOP, words, 12.5, TEXT);
     let percent = format!("{:.0} %", 100.0 * progress.share());
@@ -165,38 +161,35 @@ const MIN_LAST_WIDTH: f32 = 110.0;
 fn answer(ui: &mut Ui, room: Rect, answer: &Answer, shown: &[MethodSetting]) {
     let width = room.width() - 10.0;
     ui.scope_builder(UiBuilder::new().max_rect(room), |ui| {
-        ScrollArea::both()
-            .auto_shrink(false)
-            .max_height(room.height())
-            .show(ui, |ui| {
-                ui.spacing_mut().item_spacing = vec2(8.0, 4.0);
-                if !answer.complete {
-                    ui.label(WARNING.text("stopped: this is what was measured until then"));
-                }
-                if let Some(diagram) = &answer.diagram {
-                    let (share, least, ratio) = DIAGRAM;
-                    let high = (share * room.height()).max(least.min(room.height()));
-                    let size = vec2(width, high.min(ratio * width));
-                    let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-                    draw(ui, place, diagram, shown);
-                    ui.add_space(4.0);
-                }
-                lines(ui, &answer.report.head, width);
-                if answer.offers.is_empty() {
-                    table(ui, &answer.report, width);
-                } else {
-                    cards(ui, &answer.report, width);
-                }
-                lines(ui, &answer.report.foot, width);
-                for note in &answer.notes {
-                    lines(ui, note, width);
-                }
-                if answer.lean.is_some() {
-                    ui.add_space(4.0);
-                    let words = "write the leanest scene and open it";
-                    press(ui, 270.0, words).asks(MeasureRequest::OpenLean);
-                }
-            });
+        ScrollArea::both().auto_shrink(false).max_height(room.height()).show(ui, |ui| {
+            ui.spacing_mut().item_spacing = vec2(8.0, 4.0);
+            if !answer.complete {
+                ui.label(WARNING.text("stopped: this is what was measured until then"));
+            }
+            if let Some(diagram) = &answer.diagram {
+                let (share, least, ratio) = DIAGRAM;
+                let high = (share * room.height()).max(least.min(room.height()));
+                let size = vec2(width, high.min(ratio * width));
+                let (place, _) = ui.allocate_exact_size(size, Sense::hover());
+                draw(ui, place, diagram, shown);
+                ui.add_space(4.0);
+            }
+            lines(ui, &answer.report.head, width);
+            if answer.offers.is_empty() {
+                table(ui, &answer.report, width);
+            } else {
+                cards(ui, &answer.report, width);
+            }
+            lines(ui, &answer.report.foot, width);
+            for note in &answer.notes {
+                lines(ui, note, width);
+            }
+            if answer.lean.is_some() {
+                ui.add_space(4.0);
+                let words = "write the leanest scene and open it";
+                press(ui, 270.0, words).asks(MeasureRequest::OpenLean);
+            }
+        });
     });
 }
 
@@ -236,9 +229,8 @@ fn table(ui: &mut Ui, report: &Report, width: f32) {
     for (r, row) in report.rows.iter().enumerate() {
         let colour = if r == 0 { FAINT } else { TEXT };
         let cells = row.iter().zip(&widths);
-        let cells: Vec<_> = cells
-            .map(|(words, width)| lay(ui, words, colour, width + 0.5))
-            .collect();
+        let cells: Vec<_> =
+            cells.map(|(words, width)| lay(ui, words, colour, width + 0.5)).collect();
         let height = cells.iter().map(|cell| cell.size().y).fold(0.0, f32::max);
         let size = vec2(all.max(width), height + 5.0);
         let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
@@ -248,11 +240,7 @@ fn table(ui: &mut Ui, report: &Report, width: f32) {
         }
         let mut left = rect.left() + 4.0;
         for (c, cell) in cells.into_iter().enumerate() {
-            let slack = if is_right(c) {
-                widths[c] - cell.size().x
-            } else {
-                0.0
-            };
+            let slack = if is_right(c) { widths[c] - cell.size().x } else { 0.0 };
             let at = pos2(left + slack, rect.top() + 2.5);
             ui.painter().galley(at, cell, colour);
             left += widths[c] + COLUMN_GAP;
@@ -397,17 +385,8 @@ mod tests {
     /// Returns two curves: one of two runs, a decade apart in error and two in work; the other of
     /// one run, and one that blew up.
     fn chart() -> WorkPrecision {
-        let run = |error, work, lost| Measurement {
-            error,
-            work,
-            lost,
-            ..Measurement::default()
-        };
-        let curve = |runs| Curve {
-            style: CurveStyle::default(),
-            name: "name".into(),
-            runs,
-        };
+        let run = |error, work, lost| Measurement { error, work, lost, ..Measurement::default() };
+        let curve = |runs| Curve { style: CurveStyle::default(), name: "name".into(), runs };
         WorkPrecision {
             problems: vec![Problem {
                 curves: vec![

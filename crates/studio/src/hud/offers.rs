@@ -41,14 +41,9 @@ pub fn on_panes(ctx: &Context, session: &Session) {
         for (_, closes, change) in kinds.into_iter().filter(|(there, ..)| *there) {
             let place = Rect::from_min_size(corner, vec2(SIDE, SIDE));
             corner.x -= SIDE + 4.0;
-            fixed(
-                ctx,
-                Id::unique(("pane button", k, closes)),
-                place.min,
-                |ui| {
-                    pane_button(ui, place, closes).asks(change);
-                },
-            );
+            fixed(ctx, Id::unique(("pane button", k, closes)), place.min, |ui| {
+                pane_button(ui, place, closes).asks(change);
+            });
         }
     }
 }
@@ -73,11 +68,7 @@ fn pane_button(ui: &mut Ui, place: Rect, closes: bool) -> Response {
         bar([-6.0, 0.0], [6.0, 0.0]);
         bar([0.0, -6.0], [0.0, 6.0]);
     }
-    let about = if closes {
-        "Close this run"
-    } else {
-        "Run another solver beside, from here"
-    };
+    let about = if closes { "Close this run" } else { "Run another solver beside, from here" };
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
     response.on_hover_text(about)
 }
@@ -102,20 +93,15 @@ pub fn offer(ctx: &Context, session: &Session) {
     let (room, [width, height]) = (ctx.content_rect(), SIZE.map(|side| side + GAP));
     let count = offers.len() as f32;
     let (layout, size) = if room.width() > width * count {
-        (
-            Layout::left_to_right(Align::Center),
-            [width * count, height],
-        )
+        (Layout::left_to_right(Align::Center), [width * count, height])
     } else {
         (Layout::top_down(Align::Center), [width, height * count])
     };
     let bottom = room.center_bottom() - vec2(0.0, DISTANCE + tools + 0.5 * size[1]);
     let place = Rect::from_center_size(bottom, size.into());
     let texts = ["run", "pane 0", "pane 1", "pane 2", "pane 3"].map(Id::unique);
-    let is_taken = |id| {
-        ctx.memory(|memory| memory.area_rect(id))
-            .is_some_and(|it| it.intersects(place))
-    };
+    let is_taken =
+        |id| ctx.memory(|memory| memory.area_rect(id)).is_some_and(|it| it.intersects(place));
     if texts.into_iter().any(is_taken) || !room.contains_rect(place) {
         return;
     }

@@ -35,8 +35,7 @@ impl Overlay {
     /// Makes a texture available to images, and returns its number.
     pub fn register(&mut self, gpu: &Gpu, view: &wgpu::TextureView) -> egui::TextureId {
         let filter = wgpu::FilterMode::Linear;
-        self.renderer
-            .register_native_texture(&gpu.device, view, filter)
+        self.renderer.register_native_texture(&gpu.device, view, filter)
     }
 
     /// Forgets a registered texture.
@@ -55,8 +54,7 @@ impl Overlay {
         // egui panics if texture changes are dropped without being drained.
         for (id, deltas) in output.textures_delta.set.drain() {
             for delta in deltas {
-                self.renderer
-                    .update_texture(&gpu.device, &gpu.queue, id, &delta);
+                self.renderer.update_texture(&gpu.device, &gpu.queue, id, &delta);
             }
         }
         output
@@ -78,29 +76,21 @@ impl Overlay {
         if self.dark {
             shapes.iter_mut().for_each(darken);
         }
-        let screen = egui_wgpu::ScreenDescriptor {
-            size_in_pixels: [size.0, size.1],
-            pixels_per_point,
-        };
+        let screen =
+            egui_wgpu::ScreenDescriptor { size_in_pixels: [size.0, size.1], pixels_per_point };
         let (device, queue) = (&gpu.device, &gpu.queue);
-        let before = self
-            .renderer
-            .update_buffers(device, queue, encoder, &shapes, &screen);
+        let before = self.renderer.update_buffers(device, queue, encoder, &shapes, &screen);
         let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("text"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view,
                 depth_slice: None,
                 resolve_target: None,
-                ops: wgpu::Operations {
-                    load: below,
-                    store: wgpu::StoreOp::Store,
-                },
+                ops: wgpu::Operations { load: below, store: wgpu::StoreOp::Store },
             })],
             ..Default::default()
         });
-        self.renderer
-            .render(&mut pass.forget_lifetime(), &shapes, &screen);
+        self.renderer.render(&mut pass.forget_lifetime(), &shapes, &screen);
         for id in output.textures_delta.free.drain() {
             self.renderer.free_texture(&id);
         }
@@ -145,12 +135,7 @@ impl Overlay {
 fn filled(shapes: &[ClippedShape], pixels_per_point: f32, size: (u32, u32)) -> Vec<Part> {
     let view = Rect::from_min_size(Pos2::ZERO, vec2(size.0 as f32, size.1 as f32));
     let mut apart: Vec<Rect> = vec![];
-    for ClippedShape {
-        clip_rect,
-        shape,
-        transform_after_tessellation: moved,
-    } in shapes
-    {
+    for ClippedShape { clip_rect, shape, transform_after_tessellation: moved } in shapes {
         let bounds = shape.visual_bounding_rect();
         let bounds = *moved * bounds;
         let bounds = bounds.intersect(*clip_rect) * pixels_per_point;

@@ -81,9 +81,7 @@ impl Studio {
                 text::show_text(ctx, panes, readings);
             })
         };
-        self.offscreen
-            .render_tiles(gpu, &mut self.renderer, &pictures, write)
-            .map_err(Failure::run)
+        self.offscreen.render_tiles(gpu, &mut self.renderer, &pictures, write).map_err(Failure::run)
     }
 }
 

@@ -50,11 +50,7 @@ fn show(ui: &mut Ui, room: Rect, session: &Session) {
     for (place, mode) in columns(tabs, 3, 6.0).zip(Mode::ALL) {
         chip(ui, place, mode.name(), settings.mode == mode).asks(PlotRequest::Mode(mode));
     }
-    let mut rows = Rows {
-        ui,
-        session,
-        room: room.with_min_y(top + modes + GAP),
-    };
+    let mut rows = Rows { ui, session, room: room.with_min_y(top + modes + GAP) };
     rows.picks();
     let is_empty = session.runs.panes[0].traces.is_empty();
     if !is_empty {
@@ -251,10 +247,7 @@ fn show_point(sheet: &Sheet, session: &Session, plotted: &Plotted, panel: usize,
     let ink = colour(line.style.colour);
     let edge = Stroke::new(1.8, ink);
     sheet.painter.circle(point, 4.0, Color32::WHITE, edge);
-    let mut lines = vec![
-        (line.name.clone(), 12.5, ink),
-        (format!("at {time:.3} s"), 12.5, TEXT),
-    ];
+    let mut lines = vec![(line.name.clone(), 12.5, ink), (format!("at {time:.3} s"), 12.5, TEXT)];
     for (k, axis) in axes.into_iter().enumerate() {
         let name = axis.map_or(String::new(), Quantity::name);
         lines.push((format!("{name}  {}", value(axes, values, k)), 12.5, TEXT));
@@ -321,10 +314,7 @@ mod tests {
         fn place(&self, words: &str) -> Pos2 {
             let found = self.words.iter().find(|(said, _)| said == words);
             let all = self.words.iter().map(|(said, _)| said).collect::<Vec<_>>();
-            found
-                .unwrap_or_else(|| panic!("{words} in {all:?}"))
-                .1
-                .center()
+            found.unwrap_or_else(|| panic!("{words} in {all:?}")).1.center()
         }
     }
 
@@ -346,12 +336,7 @@ mod tests {
             let mode = Mode::ALL[mode];
             session.panel.plotting.formulas = formulas;
             apply(&mut session, PlotRequest::Mode(mode), 0);
-            for size in [
-                [1000.0, 560.0],
-                [1280.0, 800.0],
-                [1920.0, 1080.0],
-                [620.0, 900.0],
-            ] {
+            for size in [[1000.0, 560.0], [1280.0, 800.0], [1920.0, 1080.0], [620.0, 900.0]] {
                 let drawn = draw(&session, size, away);
                 for (k, (a, place)) in drawn.words.iter().enumerate() {
                     for (b, other) in &drawn.words[..k] {
@@ -359,13 +344,7 @@ mod tests {
                         assert!(apart, "{a} over {b} in {size:?}, {mode:?}");
                     }
                 }
-                for said in [
-                    "particle 210",
-                    "spring 210 to 230",
-                    "CSV",
-                    "PNG",
-                    mode.name(),
-                ] {
+                for said in ["particle 210", "spring 210 to 230", "CSV", "PNG", mode.name()] {
                     drawn.place(said);
                 }
             }
@@ -414,10 +393,7 @@ mod tests {
         assert_eq!(click("5 s"), PlotRequest::Span(5.0));
         assert_eq!(click("section"), PlotRequest::Mode(Mode::Section));
         assert_eq!(click("ruler"), PlotRequest::Ruler);
-        let on_next = |of| Quantity {
-            of,
-            variable: Variable::X,
-        };
+        let on_next = |of| Quantity { of, variable: Variable::X };
         let first = on_next(Some(Pick::Particle(210)));
         assert_eq!(click("+ the scene"), PlotRequest::Toggle(Pick::Scene));
         assert_eq!(click("of each"), PlotRequest::Axis(0, first));
@@ -443,9 +419,7 @@ mod tests {
         let (from, to) = (left.x + 30.0, 1264.0);
         let at = Pos2::new(from + (to - from) / 20.0, left.y + 30.0);
         let words = said(&session, at);
-        let time = words
-            .iter()
-            .find_map(|it| it.strip_prefix("at ")?.strip_suffix(" s"));
+        let time = words.iter().find_map(|it| it.strip_prefix("at ")?.strip_suffix(" s"));
         let time: f64 = time.unwrap().parse().unwrap();
         assert!((0.8..1.05).contains(&time), "{time}");
         let (_, series) = &session.runs.panes[0].traces.iter().as_slice()[0];
@@ -453,11 +427,7 @@ mod tests {
         let value = format!("particle 210  {y:.2} m");
         assert!(words.contains(&value), "{value} in {words:?}");
         apply(&mut session, PlotRequest::Mode(Mode::Phase), 0);
-        assert!(
-            !said(&session, Pos2::new(5.0, 5.0))
-                .iter()
-                .any(|it| it.starts_with("at "))
-        );
+        assert!(!said(&session, Pos2::new(5.0, 5.0)).iter().any(|it| it.starts_with("at ")));
     }
 
     #[test]
@@ -470,10 +440,7 @@ mod tests {
             session.panel.plotting.begin_end(end);
         }
         assert!(!session.panel.plotting.is_ruling());
-        session
-            .panel
-            .plotting
-            .move_end(RulerEnd::Point(Vector3::new(0.0, 2.0, 0.0)));
+        session.panel.plotting.move_end(RulerEnd::Point(Vector3::new(0.0, 2.0, 0.0)));
         let mut last = String::new();
         for _ in 0..2 {
             frames(&mut session, 0.3);
@@ -482,11 +449,7 @@ mod tests {
             let length = signed(way.norm());
             let words = format!("{length} m\ndx {dx}   dy {dy}   dz {dz} m");
             let drawn = draw(&session, [1280.0, 800.0], Pos2::new(5.0, 5.0));
-            assert!(
-                drawn.all.contains(&words) && words != last,
-                "{words} in {:?}",
-                drawn.all
-            );
+            assert!(drawn.all.contains(&words) && words != last, "{words} in {:?}", drawn.all);
             last = words;
         }
         apply(&mut session, PlotRequest::Ruler, 0);

@@ -17,20 +17,11 @@ pub const INK: Color32 = Color32::from_rgb(38, 84, 132);
 /// Colour of sheets, slightly transparent.
 pub const PAPER: Color32 = Color32::from_rgba_premultiplied(216, 216, 214, 222);
 /// Mark of a step well within its limit.
-pub const SAFE: Mark = Mark {
-    symbol: '✔',
-    colour: Color32::from_rgb(12, 106, 52),
-};
+pub const SAFE: Mark = Mark { symbol: '✔', colour: Color32::from_rgb(12, 106, 52) };
 /// Mark of a step near its limit, and of a spurious gain of energy.
-pub const WARNING: Mark = Mark {
-    symbol: '⚠',
-    colour: Color32::from_rgb(158, 84, 0),
-};
+pub const WARNING: Mark = Mark { symbol: '⚠', colour: Color32::from_rgb(158, 84, 0) };
 /// Mark of a step past its limit, and of a blow-up.
-pub const ALARM: Mark = Mark {
-    symbol: '✖',
-    colour: Color32::from_rgb(170, 22, 30),
-};
+pub const ALARM: Mark = Mark { symbol: '✖', colour: Color32::from_rgb(170, 22, 30) };
 /// Ground of marked text.
 const MARKED: Color32 = Color32::from_rgb(176, 208, 246);
 /// Distance of sheets from the edge of the window (points).
@@ -65,14 +56,8 @@ pub fn invert_lightness(color: Color32) -> Color32 {
 /// Creates an egui context with two fonts: one for letters, one for the symbols of the marks.
 pub fn context() -> Context {
     let mut fonts = FontDefinitions::empty();
-    for (name, bytes, scale) in [
-        ("letters", a3_plot::FONT, 1.0),
-        ("symbols", EMOJI_ICON, 0.9),
-    ] {
-        let tweak = FontTweak {
-            scale,
-            ..FontTweak::default()
-        };
+    for (name, bytes, scale) in [("letters", a3_plot::FONT, 1.0), ("symbols", EMOJI_ICON, 0.9)] {
+        let tweak = FontTweak { scale, ..FontTweak::default() };
         let data = FontData::from_static(bytes).tweak(tweak);
         fonts.font_data.insert(name.into(), Arc::new(data));
         for family in fonts.families.values_mut() {
@@ -100,26 +85,22 @@ pub fn column(
     offset: [f32; 2],
     contents: impl FnOnce(&mut Ui),
 ) {
-    Area::new(Id::unique(name))
-        .anchor(anchor, offset)
-        .interactable(false)
-        .show(ctx, |ui| {
-            ui.spacing_mut().item_spacing = egui::vec2(8.0, 6.0);
-            ui.set_max_width((ctx.content_rect().width() - 2.0 * MARGIN).clamp(60.0, 760.0));
-            contents(ui);
-        });
+    Area::new(Id::unique(name)).anchor(anchor, offset).interactable(false).show(ctx, |ui| {
+        ui.spacing_mut().item_spacing = egui::vec2(8.0, 6.0);
+        ui.set_max_width((ctx.content_rect().width() - 2.0 * MARGIN).clamp(60.0, 760.0));
+        contents(ui);
+    });
 }
 
 /// Draws a sheet behind its contents.
 pub fn sheet(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
-    Frame::new()
-        .fill(PAPER)
-        .corner_radius(7)
-        .inner_margin(Margin::symmetric(12, 9))
-        .show(ui, |ui| {
+    Frame::new().fill(PAPER).corner_radius(7).inner_margin(Margin::symmetric(12, 9)).show(
+        ui,
+        |ui| {
             ui.spacing_mut().item_spacing = egui::vec2(8.0, 3.0);
             contents(ui);
-        });
+        },
+    );
 }
 
 /// Returns the title of a sheet.

@@ -146,33 +146,27 @@ fn run(ui: &mut Ui, pane: &Pane, readings: &Readings) {
 fn springs(ui: &mut Ui, simulation: &Simulation, i: usize) {
     let springs = show::springs_of(simulation, i);
     ui.label(title(format!("particle {i}: {} springs", springs.len())).size(14.0));
-    Grid::new("springs")
-        .num_columns(5)
-        .spacing([12.0, 1.0])
-        .show(ui, |ui| {
-            for name in ["kind", "to", "N/m", "rest, m", "stretch"] {
-                ui.label(faint(name));
-            }
+    Grid::new("springs").num_columns(5).spacing([12.0, 1.0]).show(ui, |ui| {
+        for name in ["kind", "to", "N/m", "rest, m", "stretch"] {
+            ui.label(faint(name));
+        }
+        ui.end_row();
+        for s in springs.iter().take(MAX_LISTED_SPRINGS) {
+            let other = s.i + s.j - i;
+            let length = (simulation.position(i) - simulation.position(other)).norm();
+            ui.label(text(show::kind_name(s.kind)));
+            ui.label(text(other.to_string()));
+            ui.label(text(digits(s.law.stiffness)));
+            ui.label(text(digits(s.law.rest_length)));
+            ui.label(match s.law.rest_length {
+                0.0 => text("-"),
+                rest => text(format!("{:.3}", length / rest)),
+            });
             ui.end_row();
-            for s in springs.iter().take(MAX_LISTED_SPRINGS) {
-                let other = s.i + s.j - i;
-                let length = (simulation.position(i) - simulation.position(other)).norm();
-                ui.label(text(show::kind_name(s.kind)));
-                ui.label(text(other.to_string()));
-                ui.label(text(digits(s.law.stiffness)));
-                ui.label(text(digits(s.law.rest_length)));
-                ui.label(match s.law.rest_length {
-                    0.0 => text("-"),
-                    rest => text(format!("{:.3}", length / rest)),
-                });
-                ui.end_row();
-            }
-        });
+        }
+    });
     if springs.len() > MAX_LISTED_SPRINGS {
-        ui.label(faint(format!(
-            "and {} more",
-            springs.len() - MAX_LISTED_SPRINGS
-        )));
+        ui.label(faint(format!("and {} more", springs.len() - MAX_LISTED_SPRINGS)));
     }
 }
 
@@ -205,15 +199,14 @@ fn several(ctx: &Context, panes: &[Pane], readings: &Readings) {
 
 /// Draws `contents` clipped to a rectangle, without taking clicks.
 fn within(ctx: &Context, name: &str, rect: Rect, contents: impl FnOnce(&mut Ui)) {
-    Area::new(Id::unique(name))
-        .fixed_pos(rect.min)
-        .constrain(false)
-        .interactable(false)
-        .show(ctx, |ui| {
+    Area::new(Id::unique(name)).fixed_pos(rect.min).constrain(false).interactable(false).show(
+        ctx,
+        |ui| {
             ui.shrink_clip_rect(rect);
             ui.set_max_width(rect.width());
             contents(ui);
-        });
+        },
+    );
 }
 
 /// Draws the bar: scene and message, or the common readings of all panes.
@@ -225,48 +218,46 @@ fn bar(ui: &mut Ui, panes: &[Pane], readings: &Readings) {
     if readings.help {
         return;
     }
-    Frame::new()
-        .inner_margin(Margin::symmetric(12, 5))
-        .show(ui, |ui| {
-            ui.set_width(width - 24.0);
-            ui.horizontal_wrapped(|ui| {
-                ui.spacing_mut().item_spacing = vec2(14.0, 1.0);
-                if let Some(film) = &readings.film {
-                    words::film(ui, film);
-                }
-                // Wrap between readings, not within them.
-                let mut say = |words| ui.add(Label::new(words).extend());
-                say(title(scene(run)).size(15.0));
-                if let Some(message) = &readings.message {
-                    ui.label(text(message));
-                    return;
-                }
-                // The latest time: some runs may have diverged.
-                let runs = panes.iter().map(|pane| &pane.simulation);
-                let latest = runs.max_by(|a, b| a.time().total_cmp(&b.time()));
-                say(text(time(latest.unwrap_or(run))));
-                // In a wide bar, the states below include the pause.
-                let stands = readings.paused && width > 600.0;
-                if let Some(speed) = speed(readings).filter(|_| !stands) {
-                    say(text(speed));
-                }
-                if let Some(slow) = words::slow_motion(readings) {
-                    say(faint(format!("slow  {slow}")));
-                }
-                if let Some([frames, each]) = frames(readings).filter(|_| width > 900.0) {
-                    say(text(format!("{frames},  {each}")));
-                }
-                if width > 600.0 {
-                    states(run, readings).map(&mut say);
-                }
-                if let Some(without) = words::without(readings) {
-                    say(text(without));
-                }
-                if readings.in_window && !readings.touch {
-                    say(faint("h  help"));
-                }
-            });
+    Frame::new().inner_margin(Margin::symmetric(12, 5)).show(ui, |ui| {
+        ui.set_width(width - 24.0);
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(14.0, 1.0);
+            if let Some(film) = &readings.film {
+                words::film(ui, film);
+            }
+            // Wrap between readings, not within them.
+            let mut say = |words| ui.add(Label::new(words).extend());
+            say(title(scene(run)).size(15.0));
+            if let Some(message) = &readings.message {
+                ui.label(text(message));
+                return;
+            }
+            // The latest time: some runs may have diverged.
+            let runs = panes.iter().map(|pane| &pane.simulation);
+            let latest = runs.max_by(|a, b| a.time().total_cmp(&b.time()));
+            say(text(time(latest.unwrap_or(run))));
+            // In a wide bar, the states below include the pause.
+            let stands = readings.paused && width > 600.0;
+            if let Some(speed) = speed(readings).filter(|_| !stands) {
+                say(text(speed));
+            }
+            if let Some(slow) = words::slow_motion(readings) {
+                say(faint(format!("slow  {slow}")));
+            }
+            if let Some([frames, each]) = frames(readings).filter(|_| width > 900.0) {
+                say(text(format!("{frames},  {each}")));
+            }
+            if width > 600.0 {
+                states(run, readings).map(&mut say);
+            }
+            if let Some(without) = words::without(readings) {
+                say(text(without));
+            }
+            if readings.in_window && !readings.touch {
+                say(faint("h  help"));
+            }
         });
+    });
 }
 
 /// Writes the readings of a pane, a line for each. In a small pane, writes only the most important
@@ -297,10 +288,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, size: layout::Text) {
     });
     let step = match words::steps(run) {
         Some(steps) => ("steps", text(format!("{},  {steps}", run.control()))),
-        None => (
-            "step",
-            text(format!("{} s", words::seconds(run.control().value()))),
-        ),
+        None => ("step", text(format!("{} s", words::seconds(run.control().value())))),
     };
     let time = ("time", text(time(run)));
     let error = ("error", text(error(pane, readings)));
@@ -370,12 +358,7 @@ mod tests {
         run.grab(210).unwrap();
         run.take_steps(7).unwrap();
         let readings = Readings {
-            rates: Rates {
-                factor: 0.98,
-                rate: 59.6,
-                simulating: 0.2,
-                drawing: 3.4,
-            },
+            rates: Rates { factor: 0.98, rate: 59.6, simulating: 0.2, drawing: 3.4 },
             message: Some("saved".into()),
             ..Readings::default()
         };
@@ -395,10 +378,7 @@ mod tests {
         ] {
             assert!(words.contains(said), "{said} in\n{words}");
         }
-        let readings = Readings {
-            paused: true,
-            ..readings
-        };
+        let readings = Readings { paused: true, ..readings };
         let (words, _) = read(&panes, &readings, [1280.0, 720.0]);
         assert!(words.contains("paused   wind"), "{words}");
         // A paused run shows no rates.
@@ -410,27 +390,15 @@ mod tests {
         for said in ["speed\n", "frames\n", "each\n"] {
             assert!(!words.contains(said), "{words}");
         }
-        let slow = Readings {
-            rates: Rates {
-                factor: 0.0005,
-                ..Rates::default()
-            },
-            ..Readings::default()
-        };
+        let slow =
+            Readings { rates: Rates { factor: 0.0005, ..Rates::default() }, ..Readings::default() };
         let (words, _) = read(&circle, &slow, [1280.0, 720.0]);
         for said in ["1.000000 m", "0.0000000 s", "5.0e-4 × real time"] {
             assert!(words.contains(said), "{said} in\n{words}");
         }
         // There is no wind on a circle to be off.
-        assert!(
-            !words.contains("wind") && !words.contains("swing"),
-            "{words}"
-        );
-        let (words, _) = read(
-            &[crate::hud::pane("cloth", "t", 0.01)],
-            &slow,
-            [1280.0, 720.0],
-        );
+        assert!(!words.contains("wind") && !words.contains("swing"), "{words}");
+        let (words, _) = read(&[crate::hud::pane("cloth", "t", 0.01)], &slow, [1280.0, 720.0]);
         assert!(words.contains("no wind, no swing"), "{words}");
     }
 
@@ -467,10 +435,7 @@ mod tests {
         for pane in &mut panes {
             pane.simulation.take_steps(10).unwrap();
             (pane.energy, pane.error) = (Some(-12345.6789), Some(0.000_123_4));
-            pane.cost = Some(Cost {
-                evaluations: 10000.0,
-                computing: 123.4,
-            });
+            pane.cost = Some(Cost { evaluations: 10000.0, computing: 123.4 });
         }
         panes
     }
@@ -482,10 +447,7 @@ mod tests {
                 let tiles = layout::tiles(panes.len(), (size[0] as u32, size[1] as u32), 1.0);
                 assert_eq!(sheets.len(), 1 + panes.len(), "a bar and a sheet each");
                 for (k, a) in sheets.iter().enumerate() {
-                    assert!(
-                        a.right() <= size[0] && a.bottom() <= size[1],
-                        "{a:?} in {size:?}"
-                    );
+                    assert!(a.right() <= size[0] && a.bottom() <= size[1], "{a:?} in {size:?}");
                     assert!(
                         sheets[..k].iter().all(|b| !a.intersects(*b)),
                         "{sheets:?} in {size:?}"
@@ -509,11 +471,7 @@ mod tests {
     #[test]
     fn every_pane_shows_its_own_readings_and_nothing_overlaps() {
         let readings = Readings {
-            rates: Rates {
-                rate: 59.6,
-                factor: 0.98,
-                ..Rates::default()
-            },
+            rates: Rates { rate: 59.6, factor: 0.98, ..Rates::default() },
             in_window: true,
             ..Readings::default()
         };
@@ -548,10 +506,7 @@ mod tests {
         let until = panes[0].simulation.time();
         let later = &mut panes[1].simulation;
         later.advance_to(until + 0.1).unwrap();
-        let readings = Readings {
-            predictable: Some(until),
-            ..Readings::default()
-        };
+        let readings = Readings { predictable: Some(until), ..Readings::default() };
         for words in check(&panes, &readings) {
             assert_eq!(words.matches("it says little").count(), 1, "{words}");
         }
@@ -560,10 +515,7 @@ mod tests {
     #[test]
     fn a_pane_that_blew_up_says_so_and_the_others_are_unchanged() {
         let mut panes = panes(4);
-        panes[1]
-            .simulation
-            .set_control(a3_core::Control::Step(0.05))
-            .unwrap();
+        panes[1].simulation.set_control(a3_core::Control::Step(0.05)).unwrap();
         while panes[1].simulation.take_steps(1).is_ok() {}
         let readings = Readings {
             message: Some("There is nothing to swing here.".into()),

@@ -53,11 +53,7 @@ impl Window {
         mut show: impl FnMut(&Context),
     ) -> Option<Action> {
         self.time += self.step;
-        let taken = MarginF32 {
-            right,
-            bottom,
-            ..MarginF32::default()
-        };
+        let taken = MarginF32 { right, bottom, ..MarginF32::default() };
         let mut input = RawInput {
             screen_rect: Some(self.place),
             safe_area_insets: Some(SafeAreaInsets(taken)),

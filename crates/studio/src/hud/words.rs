@@ -33,9 +33,8 @@ pub fn signed(number: f64) -> String {
 /// Returns the scene's name, and its grid if it has one.
 pub fn scene(simulation: &Simulation) -> String {
     let scene = simulation.scene();
-    let grid = scene.grid().map_or(String::new(), |grid| {
-        format!("  {} × {}", grid.rows(), grid.cols())
-    });
+    let grid =
+        scene.grid().map_or(String::new(), |grid| format!("  {} × {}", grid.rows(), grid.cols()));
     format!("{}{grid}", scene.name)
 }
 
@@ -84,11 +83,7 @@ pub fn limit(pane: &Pane) -> Option<(String, Mark)> {
         _ if modes_tell_all => SAFE,
         _ => return None,
     };
-    let largest = if limit.is_sharp() {
-        limit.step
-    } else {
-        limit.bounded
-    };
+    let largest = if limit.is_sharp() { limit.step } else { limit.bounded };
     let share = |largest: f64| {
         let percent = 100.0 * step / largest;
         format!("{} ms (step at {percent:.0} %)", digits(1e3 * largest))
@@ -115,9 +110,7 @@ pub fn limit_row(pane: &Pane) -> RichText {
     }
     let most = pane.limit.limit.map(|limit| limit.step);
     let most = most.filter(|most| most.is_finite());
-    text(most.map_or("none is known".into(), |most| {
-        format!("at most {} ms", digits(1e3 * most))
-    }))
+    text(most.map_or("none is known".into(), |most| format!("at most {} ms", digits(1e3 * most))))
 }
 
 /// Returns the work of the collision safeguard since the start, if there was any: its impulses, the
@@ -133,10 +126,7 @@ pub fn contact(simulation: &Simulation) -> Option<String> {
     match (guarded.impulses, guarded.cuts) {
         (0, 0) => None,
         (_, 0) => Some(impulses),
-        _ => Some(format!(
-            "{impulses}, {cuts} ({} N s lost)",
-            digits(guarded.lost)
-        )),
+        _ => Some(format!("{impulses}, {cuts} ({} N s lost)", digits(guarded.lost))),
     }
 }
 
@@ -164,17 +154,10 @@ pub fn energy(pane: &Pane) -> (&'static str, String) {
             let change = pane.simulation.energy_change().unwrap_or_default();
             let percent = format!("{:+.2}", 100.0 * change);
             let is_kept = percent.trim_start_matches(['+', '-']) == "0.00";
-            let said = if is_kept {
-                String::new()
-            } else {
-                format!(" ({percent} %)")
-            };
+            let said = if is_kept { String::new() } else { format!(" ({percent} %)") };
             ("energy", format!("{energy:.3} J{said}"))
         }
-        None => (
-            "radius",
-            format!("{:.6} m", pane.simulation.position(0).norm()),
-        ),
+        None => ("radius", format!("{:.6} m", pane.simulation.position(0).norm())),
     }
 }
 
@@ -188,22 +171,13 @@ pub fn gained(simulation: &Simulation) -> Option<RichText> {
 /// Returns the largest violation of a constraint so far, if it is visible.
 pub fn worst_constraint(simulation: &Simulation) -> Option<RichText> {
     let unmet = simulation.worst_constraint()?;
-    let words = format!(
-        "{} was off by {:.1} %",
-        unmet.constraint,
-        100.0 * unmet.share
-    );
+    let words = format!("{} was off by {:.1} %", unmet.constraint, 100.0 * unmet.share);
     unmet.is_visible().then(|| WARNING.text(&words))
 }
 
 /// Returns the frame rate and the time per frame, while frames are measured.
 pub fn frames(readings: &Readings) -> Option<[String; 2]> {
-    let Rates {
-        rate,
-        simulating,
-        drawing,
-        ..
-    } = readings.rates;
+    let Rates { rate, simulating, drawing, .. } = readings.rates;
     let each = || format!("{simulating:.1} ms steps + {drawing:.1} ms drawing");
     (!readings.paused && rate > 0.0).then(|| [format!("{rate:.0} per second"), each()])
 }
@@ -224,10 +198,7 @@ pub fn states(simulation: &Simulation, readings: &Readings) -> Option<RichText> 
         (readings.paused, "paused"),
         (simulation.windy(), "wind"),
         (simulation.swinging(), "swing"),
-        (
-            simulation.grabbed().is_some() || simulation.grabbed_obstacle().is_some(),
-            "pulling",
-        ),
+        (simulation.grabbed().is_some() || simulation.grabbed_obstacle().is_some(), "pulling"),
     ];
     let on = states.iter().filter(|(on, _)| *on);
     let on: Vec<_> = on.map(|(_, name)| *name).collect();
@@ -235,10 +206,7 @@ pub fn states(simulation: &Simulation, readings: &Readings) -> Option<RichText> 
         return Some(text(on.join("   ")).strong());
     }
     let scene = simulation.scene();
-    let off = [
-        scene.wind.map(|_| "no wind"),
-        scene.swing.map(|_| "no swing"),
-    ];
+    let off = [scene.wind.map(|_| "no wind"), scene.swing.map(|_| "no swing")];
     let off: Vec<_> = off.into_iter().flatten().collect();
     (!off.is_empty()).then(|| faint(off.join(", ")))
 }
@@ -364,16 +332,10 @@ mod tests {
             pane.simulation.set_touching(true).unwrap();
             pane.simulation.take_steps(steps).unwrap();
             let guarded = pane.simulation.guarded();
-            (
-                read(&[pane], &Readings::default(), [1280.0, 720.0]).0,
-                guarded,
-            )
+            (read(&[pane], &Readings::default(), [1280.0, 720.0]).0, guarded)
         };
         let (words, guarded) = said(20);
-        assert!(
-            guarded.impulses == 0 && !words.contains("contact"),
-            "{words}"
-        );
+        assert!(guarded.impulses == 0 && !words.contains("contact"), "{words}");
         let (words, guarded) = said(200);
         let held = format!("contact\n{} impulses\n", guarded.impulses);
         assert!(guarded.impulses > 1 && words.contains(&held), "{words}");
@@ -409,11 +371,7 @@ mod tests {
             assert!(words.contains(&share), "{share} in {words}");
             assert_eq!(found, mark);
         }
-        assert!(
-            said("mit", "i", 0.1)
-                .0
-                .contains("none: every step is stable")
-        );
+        assert!(said("mit", "i", 0.1).0.contains("none: every step is stable"));
         for (step, mark, time) in [(0.01, WARNING, "461"), (0.1, ALARM, "46.3")] {
             let (words, found) = said("simple", "e", step);
             // A step multiplies the radius by (1 + h^2)^1/2.
@@ -427,19 +385,12 @@ mod tests {
         for (step, mark) in [(0.000_2, SAFE), (0.000_4, WARNING), (0.000_6, ALARM)] {
             let (words, found) = said("mit", "e", step);
             assert!(words.contains("0.37"), "{words}");
-            assert_eq!(
-                words.contains("; motion grows tenfold in"),
-                mark != SAFE,
-                "{words}"
-            );
+            assert_eq!(words.contains("; motion grows tenfold in"), mark != SAFE, "{words}");
             assert_eq!(found, mark);
         }
         let (words, _) = said("cloth", "a", 1e-4);
         assert!(words.contains("tolerance 1e-4"), "{words}");
-        assert!(
-            words.contains("rejected") && words.contains("limit"),
-            "{words}"
-        );
+        assert!(words.contains("rejected") && words.contains("limit"), "{words}");
     }
 
     #[test]
@@ -486,29 +437,15 @@ mod tests {
         let mut pane = pane("mit", "e", 0.05);
         let run = &mut pane.simulation;
         while run.take_steps(1).is_ok() {}
-        run.set_method(integrators::find("r").unwrap(), Control::Step(0.01))
-            .unwrap();
+        run.set_method(integrators::find("r").unwrap(), Control::Step(0.01)).unwrap();
         let panes = [pane];
-        let readings = Readings {
-            message: Some("There is no wind here.".into()),
-            ..Readings::default()
-        };
-        for size in [
-            [1280.0, 720.0],
-            [800.0, 600.0],
-            [500.0, 400.0],
-            [260.0, 860.0],
-        ] {
+        let readings =
+            Readings { message: Some("There is no wind here.".into()), ..Readings::default() };
+        for size in [[1280.0, 720.0], [800.0, 600.0], [500.0, 400.0], [260.0, 860.0]] {
             let (words, sheets) = read(&panes, &readings, size);
             let words = words.replace('\n', " ");
-            assert!(
-                words.contains("blew up at step") && words.contains("no wind here"),
-                "{words}"
-            );
-            assert!(
-                words.contains("A step of 0.05 s was too long for explicit Euler."),
-                "{words}"
-            );
+            assert!(words.contains("blew up at step") && words.contains("no wind here"), "{words}");
+            assert!(words.contains("A step of 0.05 s was too long for explicit Euler."), "{words}");
             assert!(sheets.len() >= 3);
             for (k, a) in sheets.iter().enumerate() {
                 assert!(a.right() <= size[0] + 1.0, "{a:?} in {size:?}");
@@ -523,10 +460,9 @@ mod tests {
     /// Each of the last steps before the blow-up is a moment, up to the last valid state.
     #[test]
     fn a_blow_up_can_be_seen_step_by_step() {
-        for (words, step) in [
-            (["r", "0.05", "--scene", "mit"], 0.05),
-            (["e", "0.002", "--scene", "mit"], 0.002),
-        ] {
+        for (words, step) in
+            [(["r", "0.05", "--scene", "mit"], 0.05), (["e", "0.002", "--scene", "mit"], 0.002)]
+        {
             let mut session = session(&words);
             session.readings.in_window = true;
             while session.runs.panes[0].alive() {

@@ -144,28 +144,19 @@ impl Recorder {
                 *next += apart;
                 let camera = session.view.camera;
                 let panes = &mut session.runs.panes;
-                self.studio
-                    .draw(gpu, panes, camera, self.scale, &readings)?
+                self.studio.draw(gpu, panes, camera, self.scale, &readings)?
             }
-            Source::Past {
-                panes,
-                camera,
-                moments,
-                ..
-            } => {
+            Source::Past { panes, camera, moments, .. } => {
                 let Some(moment) = moments.next() else {
                     return Ok(false);
                 };
                 for (pane, moment) in panes.iter_mut().zip(&moment) {
                     // The checkpoint is of this scene, so it fits.
-                    let _ = moment
-                        .as_ref()
-                        .map(|moment| pane.simulation.restore(moment));
+                    let _ = moment.as_ref().map(|moment| pane.simulation.restore(moment));
                     let energy = pane.simulation.energy();
                     pane.energy = energy.map(|energy| energy.total());
                 }
-                self.studio
-                    .draw(gpu, panes, *camera, self.scale, &readings)?
+                self.studio.draw(gpu, panes, *camera, self.scale, &readings)?
             }
         };
         self.encoder.add(pixels);
@@ -185,10 +176,7 @@ impl Recorder {
                 format!("writing {path}: {} %", 100 * self.drawn / count)
             }
         };
-        FilmProgress {
-            live: self.is_live(),
-            said,
-        }
+        FilmProgress { live: self.is_live(), said }
     }
 
     /// Completes the film, and returns a message about it. Fails if it could not be written.
@@ -198,10 +186,7 @@ impl Recorder {
             return Ok(format!("{path}: nothing was filmed"));
         }
         self.encoder.finish()?;
-        Ok(format!(
-            "wrote {path}: {} frames, {seconds:.1} s",
-            self.drawn
-        ))
+        Ok(format!("wrote {path}: {} frames, {seconds:.1} s", self.drawn))
     }
 }
 
@@ -228,11 +213,7 @@ impl Encoder {
             }
             film.finish()
         });
-        Self {
-            frames,
-            waiting,
-            thread,
-        }
+        Self { frames, waiting, thread }
     }
 
     /// Returns whether fewer frames wait than the limit.

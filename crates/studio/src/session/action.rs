@@ -334,11 +334,7 @@ pub static GROUPS: [Group; 8] = [
             window(
                 &["Esc"],
                 WindowAction::Quit,
-                if IS_PAGE {
-                    "close the help"
-                } else {
-                    "close the help; quit"
-                },
+                if IS_PAGE { "close the help" } else { "close the help; quit" },
             ),
         ],
     },
@@ -394,9 +390,7 @@ pub fn action(name: &str) -> Option<Action> {
     if let Ok(digit @ 0..=9) = name.parse::<usize>() {
         return Some(Action::Run(RunAction::Solver((digit + 9) % 10)));
     }
-    bindings()
-        .find(|binding| binding.keys.contains(&name.as_str()))
-        .map(|binding| binding.action)
+    bindings().find(|binding| binding.keys.contains(&name.as_str())).map(|binding| binding.action)
 }
 
 #[cfg(test)]

@@ -139,9 +139,9 @@ impl Session {
                     let done = self.runs.set_method(method, at, &self.tuning.defaults);
                     self.report(done);
                 }
-                None => self
-                    .readings
-                    .say(format!("There are {} solvers.", integrators::METHODS.len())),
+                None => {
+                    self.readings.say(format!("There are {} solvers.", integrators::METHODS.len()))
+                }
             },
             RunAction::LongerStep | RunAction::ShorterStep => {
                 let done = self.runs.set_steps(action == RunAction::LongerStep);
@@ -218,8 +218,7 @@ impl Session {
 
     /// Shows the error of a refused request. Returns whether there is none.
     pub fn report(&mut self, done: Result<(), impl ToString>) -> bool {
-        done.map_err(|why| self.readings.say(why.to_string()))
-            .is_ok()
+        done.map_err(|why| self.readings.say(why.to_string())).is_ok()
     }
 
     /// Sets the step (s) or the tolerance of one pane, or shows why that is refused.
@@ -307,8 +306,7 @@ impl Session {
             self.list = None;
             return false;
         }
-        list.press(key)
-            .is_some_and(|number| self.take_entry(number))
+        list.press(key).is_some_and(|number| self.take_entry(number))
     }
 
     /// Applies an entry by its number, closes the list, and returns whether that changed the scene.
@@ -425,8 +423,7 @@ impl Session {
         let is_named = self.scenes.shown.source.description.camera.is_some();
         if !is_named && let Ok(run) = first.anew(first.method(), first.control()) {
             let until = self.tuning.defaults.duration.unwrap_or(SEEN_TIME);
-            self.view
-                .see_motion(&mut self.runs.panes, run, until.min(SEEN_TIME));
+            self.view.see_motion(&mut self.runs.panes, run, until.min(SEEN_TIME));
         }
     }
 
@@ -484,11 +481,7 @@ impl Session {
     fn bring_apart(&mut self) {
         match self.come_apart() {
             Ok(()) => {
-                let plays = if self.readings.paused {
-                    ", Space plays"
-                } else {
-                    ""
-                };
+                let plays = if self.readings.paused { ", Space plays" } else { "" };
                 self.readings.say(format!(
                     "The surfaces are apart now, and touch: key z undoes that{plays}."
                 ));

@@ -116,9 +116,8 @@ pub fn task(session: &Session, at: usize) -> Result<(Task, String), String> {
     }
     let source = &shown.source;
     let scene = run.scene();
-    let grid = scene.grid().map_or(String::new(), |grid| {
-        format!(" {} × {}", grid.rows(), grid.cols())
-    });
+    let grid =
+        scene.grid().map_or(String::new(), |grid| format!(" {} × {}", grid.rows(), grid.cols()));
     let from = if from_start {
         "from its beginning".into()
     } else {
@@ -178,10 +177,7 @@ mod tests {
         assert!(now.state == run.state() && now.state != own);
         assert!(now.model.network().unwrap().is_pinned(3));
         // Nothing here depends on time, so the forces are the same up to rounding.
-        let (a, b) = (
-            forces(&now.model, &now.state),
-            forces(run.model(), &now.state),
-        );
+        let (a, b) = (forces(&now.model, &now.state), forces(run.model(), &now.state));
         for (a, b) in a.iter().zip(&b) {
             assert!((a - b).abs() <= 1e-12 * b.abs().max(1.0), "{a} {b}");
         }
@@ -194,12 +190,9 @@ mod tests {
         assert_eq!(begun.state, own);
         session.act(RunAction::Reset, 0);
         // Stretched springs show their stiffness.
-        let [measured, run, untuned] = [
-            &begun.model,
-            session.runs.first().model(),
-            &session.tuning.own.model,
-        ]
-        .map(|model| forces(model, &now.state));
+        let [measured, run, untuned] =
+            [&begun.model, session.runs.first().model(), &session.tuning.own.model]
+                .map(|model| forces(model, &now.state));
         let near = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-12 * b.abs().max(1.0);
         assert!(measured.iter().zip(&run).all(near));
         assert!(!measured.iter().zip(&untuned).all(near));
@@ -285,22 +278,11 @@ mod tests {
             session.measuring.update();
         }
         assert!(!measure(&mut session, MeasureRequest::Use(0)));
-        assert!(measure(
-            &mut session,
-            MeasureRequest::RunBeside { curve: 1, run: 1 }
-        ));
-        assert!(!measure(
-            &mut session,
-            MeasureRequest::RunBeside { curve: 0, run: 0 }
-        ));
+        assert!(measure(&mut session, MeasureRequest::RunBeside { curve: 1, run: 1 }));
+        assert!(!measure(&mut session, MeasureRequest::RunBeside { curve: 0, run: 0 }));
         let panes = session.runs.panes.iter().map(|pane| &pane.simulation);
-        let runs: Vec<_> = panes
-            .map(|run| (run.method().name, run.control()))
-            .collect();
-        let expected = [
-            ("dopri5", Control::Tolerance(1e-5)),
-            ("rk4", Control::Step(0.03)),
-        ];
+        let runs: Vec<_> = panes.map(|run| (run.method().name, run.control())).collect();
+        let expected = [("dopri5", Control::Tolerance(1e-5)), ("rk4", Control::Step(0.03))];
         assert_eq!(runs, expected);
         for finer in [true, true, false] {
             measure(&mut session, MeasureRequest::Error { finer });

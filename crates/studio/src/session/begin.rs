@@ -48,10 +48,7 @@ pub fn step(step: &Step) -> Result<Session, Failure> {
 
 /// Creates a session on a scene that was read already.
 fn session_on(source: Source, opening: &Opening) -> Result<Session, Failure> {
-    let request = Request {
-        source,
-        options: opening.options,
-    };
+    let request = Request { source, options: opening.options };
     match opening.methods[..] {
         [method] => alone(request, method, opening),
         _ => beside(request, opening),
@@ -159,10 +156,7 @@ mod tests {
         frames(&mut opened, 0.2);
         assert!(opened.runs.any_alive());
         let named = format!("solver = 't'\nstep = 0.005\n{jelly}");
-        for as_asked in [
-            Box::new(open(jelly, &["t", "0.005"])),
-            Box::new(open(&named, &[])),
-        ] {
+        for as_asked in [Box::new(open(jelly, &["t", "0.005"])), Box::new(open(&named, &[]))] {
             let control = as_asked.runs.first().control();
             assert_eq!(control.step(), Some(0.005));
         }

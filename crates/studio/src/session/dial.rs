@@ -33,12 +33,7 @@ impl Dial {
     /// Creates a dial.
     pub fn new(value: f64, own: f64, scale: DialScale, words: impl Into<String>) -> Self {
         let words = words.into();
-        Self {
-            value,
-            own,
-            scale,
-            words,
-        }
+        Self { value, own, scale, words }
     }
 }
 
@@ -118,11 +113,7 @@ impl DialScale {
     pub fn next(&self, value: f64, up: bool, other: bool) -> f64 {
         // `hair` is the distance within which a value counts as on a rung, despite rounding.
         let rung = |x: f64, hair: f64| {
-            if up {
-                (x + hair).floor() + 1.0
-            } else {
-                (x - hair).ceil() - 1.0
-            }
+            if up { (x + hair).floor() + 1.0 } else { (x - hair).ceil() - 1.0 }
         };
         match self {
             Self::Linear([from, to], step) => {

@@ -51,16 +51,8 @@ impl Tool {
         ),
         (Self::AddBall, "ball", "Click on what the ball shall lie."),
         (Self::AddBox, "box", "Click on what the box shall stand."),
-        (
-            Self::Particle,
-            "particle",
-            "Click where the particle shall be.",
-        ),
-        (
-            Self::Spring,
-            "spring",
-            "Drag from one particle to another to join them by a spring.",
-        ),
+        (Self::Particle, "particle", "Click where the particle shall be."),
+        (Self::Spring, "spring", "Drag from one particle to another to join them by a spring."),
         (
             Self::Rod,
             "rod",
@@ -165,11 +157,7 @@ fn fitting(runs: &Runs) -> [f64; 5] {
     let bodies = centers.map(|body| network.map_or(0.0, |network| network.masses()[body.center()]));
     let (count, points) = (free.len(), free.iter().sum::<f64>());
     let total = points + bodies.sum::<f64>();
-    let point = if count == 0 {
-        0.1 * total
-    } else {
-        points / count as f64
-    };
+    let point = if count == 0 { 0.1 * total } else { points / count as f64 };
     let stiffness = network.and_then(|network| Some(network.springs().next()?.law.stiffness));
     let liquid = network.and_then(Network::fluid).map(Fluid::law);
     let layers = liquid.map_or(0.0, |law| LAYERS * law.spacing);

@@ -126,13 +126,7 @@ pub fn exchange(session: &mut Session, next: Former) -> Former {
     let names = left_out.map(|k| parts[*k].name.clone());
     session.readings.left_out = names.collect();
     session.begin_new_run();
-    Former {
-        simulations,
-        presentation,
-        tuning,
-        origin,
-        numbers: next.numbers.map(Splice::back),
-    }
+    Former { simulations, presentation, tuning, origin, numbers: next.numbers.map(Splice::back) }
 }
 
 /// Creates a run that continues another one in a scene with other parts. `changes` are those of
@@ -146,10 +140,7 @@ fn continued(
     if !passage.fits(run.state().len(), scene) {
         return Err("Without this part, the scene has other particles.".into());
     }
-    let scene = Scene {
-        limits: run.scene().limits,
-        ..scene.clone()
-    };
+    let scene = Scene { limits: run.scene().limits, ..scene.clone() };
     let (method, control) = (run.method(), run.control());
     let go_on = || -> Result<Simulation, Error> {
         let mut next = Simulation::new(scene, method, control)?;
@@ -188,9 +179,8 @@ fn fit(
         Some(old.obstacles()[*k].path)
     };
     let obstacles = obstacle_ids(new, after).into_iter();
-    moment.obstacles = obstacles
-        .map(|(k, id)| (k, path_of(id).unwrap_or(new.obstacles()[k].path)))
-        .collect();
+    moment.obstacles =
+        obstacles.map(|(k, id)| (k, path_of(id).unwrap_or(new.obstacles()[k].path))).collect();
     passage.take(moment, run, next);
     if !moment.torn.is_empty() {
         let whole = new.all_springs();

@@ -62,8 +62,7 @@ impl Runs {
     /// Returns the present states of all runs.
     pub fn moments(&self) -> States {
         let runs = self.all();
-        runs.map(|run| run.blow_up().is_none().then(|| run.moment()))
-            .collect()
+        runs.map(|run| run.blow_up().is_none().then(|| run.moment())).collect()
     }
 
     /// Advances several panes to exactly the same time, by a shortened step if need be, so that an
@@ -162,10 +161,7 @@ impl Runs {
                 let _ = run.set_obstacle_path(obstacle, to);
             }
         }
-        (way != Vector3::zeros()).then(|| Change::Push {
-            obstacle,
-            paths: Box::new([from, to]),
-        })
+        (way != Vector3::zeros()).then(|| Change::Push { obstacle, paths: Box::new([from, to]) })
     }
 
     /// Returns the path of obstacle k in the first run.
@@ -264,13 +260,7 @@ mod tests {
         let touching = |session: &Session| {
             let panes = session.runs.panes.iter();
             let mut touching: Vec<_> = panes.map(|pane| pane.simulation.touching()).collect();
-            touching.extend(
-                session
-                    .runs
-                    .reference
-                    .as_ref()
-                    .map(|r| r.simulation.touching()),
-            );
+            touching.extend(session.runs.reference.as_ref().map(|r| r.simulation.touching()));
             touching
         };
         session.act(RunAction::Touch, 0);
@@ -298,10 +288,7 @@ mod tests {
         last.adjust(|network| network.reshape_obstacle(0, shape.clone()).unwrap());
         session.act(RunAction::Touch, 0);
         let said = session.readings.message.clone().unwrap();
-        assert!(
-            said.starts_with("Surfaces that cross cannot begin to touch: "),
-            "{said}"
-        );
+        assert!(said.starts_with("Surfaces that cross cannot begin to touch: "), "{said}");
         assert_eq!(touching(&session), [false; 3]);
         let mut session = crate::session::session(&["e", "0.01", "--scene", "simple"]);
         session.act(RunAction::Touch, 0);
@@ -316,22 +303,13 @@ mod tests {
         let times = times(&session);
         assert_eq!(times[0], times[1]);
         let pinned = |session: &Session| {
-            let networks = session
-                .runs
-                .panes
-                .iter()
-                .map(|p| p.simulation.model().network().unwrap());
+            let networks =
+                session.runs.panes.iter().map(|p| p.simulation.model().network().unwrap());
             networks.map(|n| n.is_pinned(210)).collect::<Vec<_>>()
         };
         assert_eq!(pinned(&session), [true, true]);
         frames(&mut session, 0.3);
-        assert!(
-            session
-                .runs
-                .panes
-                .iter()
-                .all(|pane| pane.error.unwrap() < 2e-3)
-        );
+        assert!(session.runs.panes.iter().all(|pane| pane.error.unwrap() < 2e-3));
         session.toggle_pin(210);
         assert_eq!(pinned(&session), [false, false]);
     }
@@ -342,10 +320,7 @@ mod tests {
         let mut session = compared(&["r:0.013", "r:0.005", "--scene", "cloth"], 0.5);
         let small = |session: &Session, what: &str| {
             let errors: Vec<_> = session.runs.panes.iter().map(|pane| pane.error).collect();
-            assert!(
-                errors.iter().all(|e| e.is_some_and(|e| e < 2e-3)),
-                "{what}: {errors:?}"
-            );
+            assert!(errors.iter().all(|e| e.is_some_and(|e| e < 2e-3)), "{what}: {errors:?}");
         };
         small(&session, "still");
         session.act(RunAction::Swing, 0);
@@ -361,26 +336,12 @@ mod tests {
             session.runs.pull(Vector3::new(1.0, 1.0, 1.5));
             frames(&mut session, 1.0 / 60.0);
         }
-        let places = session
-            .runs
-            .panes
-            .iter()
-            .map(|pane| pane.simulation.position(399));
-        assert!(
-            places
-                .clone()
-                .all(|p| (p - Vector3::new(1.0, 1.0, 1.5)).norm() < 0.1)
-        );
+        let places = session.runs.panes.iter().map(|pane| pane.simulation.position(399));
+        assert!(places.clone().all(|p| (p - Vector3::new(1.0, 1.0, 1.5)).norm() < 0.1));
         session.release();
         frames(&mut session, 0.2);
         // Each run pulled its particle from another position.
-        assert!(
-            session
-                .runs
-                .panes
-                .iter()
-                .all(|pane| pane.error.unwrap() < 0.1)
-        );
+        assert!(session.runs.panes.iter().all(|pane| pane.error.unwrap() < 0.1));
         session.act(RunAction::Reset, 0);
         assert_eq!(times(&session), [0.0, 0.0]);
         frames(&mut session, 0.5);

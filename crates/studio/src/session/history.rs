@@ -23,17 +23,9 @@ pub enum Change {
     /// Particles were pinned or freed.
     Pins { particles: Vec<usize>, pinned: bool },
     /// An obstacle was pushed: its paths before and after.
-    Push {
-        obstacle: usize,
-        paths: Box<[Path; 2]>,
-    },
+    Push { obstacle: usize, paths: Box<[Path; 2]> },
     /// A knob was turned: its row in the table, its pane, and its value before and after.
-    Knob {
-        row: usize,
-        pane: usize,
-        from: f64,
-        to: f64,
-    },
+    Knob { row: usize, pane: usize, from: f64, to: f64 },
     /// A part of the scene was left out, or brought back: its index, and whether it is in since.
     Part { part: usize, is_in: bool },
     /// Surfaces came apart to touch.
@@ -98,28 +90,19 @@ impl History {
     /// undone changes. A turn of a knob extends the last change if it follows soon, or in the same
     /// drag.
     pub fn record(&mut self, change: Change, before: Option<States>) {
-        let soon = self
-            .last
-            .is_some_and(|last| self.held || last.elapsed() < MERGE_TIME);
+        let soon = self.last.is_some_and(|last| self.held || last.elapsed() < MERGE_TIME);
         self.last = Some(Instant::now());
         self.undone.clear();
         if let Change::Knob { row, pane, to, .. } = change
-            && let Some(Change::Knob {
-                row: last_row,
-                pane: last_pane,
-                to: last_to,
-                ..
-            }) = self.done.last_mut().map(|last| &mut last.change)
+            && let Some(Change::Knob { row: last_row, pane: last_pane, to: last_to, .. }) =
+                self.done.last_mut().map(|last| &mut last.change)
             && soon
             && (*last_row, *last_pane) == (row, pane)
         {
             *last_to = to;
             return;
         }
-        self.done.push(Recorded {
-            change,
-            states: [before, None],
-        });
+        self.done.push(Recorded { change, states: [before, None] });
         self.forget_states(MAX_STATES, |_| true);
         if self.done.len() > MAX_CHANGES {
             self.done.remove(0);
@@ -190,12 +173,7 @@ mod tests {
 
     #[test]
     fn a_drag_is_one_change_and_a_new_change_drops_the_undone_ones() {
-        let knob = |row, from: f64, to: f64| Change::Knob {
-            row,
-            pane: 0,
-            from,
-            to,
-        };
+        let knob = |row, from: f64, to: f64| Change::Knob { row, pane: 0, from, to };
         let step = |history: &mut History, redo| {
             let next = history.next(redo).map(|it| it.change.clone());
             history.step(redo, None);
@@ -219,10 +197,7 @@ mod tests {
         history.record(knob(7, 0.0, 1.0), None);
         assert_eq!(step(&mut history, true), None);
         for k in 0..300 {
-            let change = Change::Pins {
-                particles: vec![k],
-                pinned: true,
-            };
+            let change = Change::Pins { particles: vec![k], pinned: true };
             history.record(change, None);
         }
         assert_eq!(history.done.len(), MAX_CHANGES);
@@ -233,16 +208,12 @@ mod tests {
         let mut session = compared(&["t:0.01", "r:0.01", "--scene", "mit"], 0.2);
         let pins = |session: &crate::session::Session| {
             let runs = session.runs.panes.iter().map(|pane| &pane.simulation);
-            runs.map(|run| run.model().network().unwrap().pins().count())
-                .collect::<Vec<_>>()
+            runs.map(|run| run.model().network().unwrap().pins().count()).collect::<Vec<_>>()
         };
         assert_eq!(pins(&session), [2, 2]);
         session.pin_all(&[40, 41, 42, 0], true);
         let said = session.readings.message.clone().unwrap();
-        assert_eq!(
-            (pins(&session), &*said),
-            (vec![5, 5], "3 particles are pinned now.")
-        );
+        assert_eq!((pins(&session), &*said), (vec![5, 5], "3 particles are pinned now."));
         session.act(RunAction::FreeAll, 0);
         assert_eq!(pins(&session), [0, 0]);
         frames(&mut session, 0.1);
@@ -251,19 +222,13 @@ mod tests {
             assert_eq!(pins(&session), [expected; 2]);
         }
         panel::undo(&mut session, false);
-        assert_eq!(
-            session.readings.message.as_deref(),
-            Some("There is nothing to undo.")
-        );
+        assert_eq!(session.readings.message.as_deref(), Some("There is nothing to undo."));
         panel::undo(&mut session, true);
         assert_eq!(pins(&session), [5, 5]);
         // Another scene starts with an empty history.
         session.act(RunAction::NextScene, 0);
         panel::undo(&mut session, false);
-        assert_eq!(
-            session.readings.message.as_deref(),
-            Some("There is nothing to undo.")
-        );
+        assert_eq!(session.readings.message.as_deref(), Some("There is nothing to undo."));
     }
 
     #[test]
@@ -272,8 +237,7 @@ mod tests {
         session.readings.in_window = true;
         let states = |session: &crate::session::Session| {
             let runs = session.runs.panes.iter().map(|pane| &pane.simulation);
-            runs.map(|run| (run.time(), run.state().to_vec()))
-                .collect::<Vec<_>>()
+            runs.map(|run| (run.time(), run.state().to_vec())).collect::<Vec<_>>()
         };
         session.runs.align();
         let before = states(&session);
@@ -305,10 +269,7 @@ mod tests {
             Some("There is nothing here that could be pinned.")
         );
         circle.act(RunAction::FreeAll, 0);
-        assert_eq!(
-            circle.readings.message.as_deref(),
-            Some("There are no pins here.")
-        );
+        assert_eq!(circle.readings.message.as_deref(), Some("There are no pins here."));
     }
 
     #[test]

@@ -265,11 +265,7 @@ mod tests {
     }
 
     fn at((lesson, step): (usize, usize)) -> Lessons {
-        Lessons {
-            chosen: lesson,
-            step: Some(step),
-            ..Lessons::default()
-        }
+        Lessons { chosen: lesson, step: Some(step), ..Lessons::default() }
     }
 
     #[test]
@@ -281,10 +277,7 @@ mod tests {
         };
         let wrong = (right + 1) % choices.len();
         lessons.choose(wrong);
-        assert_eq!(
-            (lessons.given().right, lessons.given().wrong),
-            (Some(false), 1)
-        );
+        assert_eq!((lessons.given().right, lessons.given().wrong), (Some(false), 1));
         assert_eq!(lessons.next_step(place.0), place.1);
         lessons.choose(*right);
         assert!(lessons.given().done && lessons.is_done(place.0, place.1));
@@ -313,14 +306,8 @@ mod tests {
         assert!(!lessons.type_letter(Some('k'), false));
         lessons.check();
         assert_eq!(lessons.given(), Given::default());
-        assert_eq!(
-            try_number(&mut lessons, value * (1.0 + 1.1 * within)),
-            Some(false)
-        );
-        assert_eq!(
-            try_number(&mut lessons, value * (1.0 + 0.9 * within)),
-            Some(true)
-        );
+        assert_eq!(try_number(&mut lessons, value * (1.0 + 1.1 * within)), Some(false));
+        assert_eq!(try_number(&mut lessons, value * (1.0 + 0.9 * within)), Some(true));
         // What is done can no longer be typed over.
         assert!(lessons.given().done && !lessons.type_letter(Some('1'), false));
         let mut other = at(place(true));

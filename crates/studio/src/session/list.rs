@@ -53,12 +53,7 @@ pub enum TextKey {
 impl List {
     /// Creates a list, with the current entry highlighted.
     pub fn new(topic: Topic, all: Vec<Entry>) -> Self {
-        let mut list = Self {
-            topic,
-            filter: String::new(),
-            chosen: 0,
-            all,
-        };
+        let mut list = Self { topic, filter: String::new(), chosen: 0, all };
         list.choose_first();
         list
     }
@@ -209,10 +204,7 @@ mod tests {
         assert!(shown.ends_with("strip.toml"), "{shown}");
         // The file now belongs to this window.
         let entries = session.scenes.entries();
-        assert_eq!(
-            entries.iter().filter(|it| it.name == "strip.toml").count(),
-            0
-        );
+        assert_eq!(entries.iter().filter(|it| it.name == "strip.toml").count(), 0);
     }
 
     #[test]
@@ -221,12 +213,8 @@ mod tests {
         session.act(RunAction::Solvers, 1);
         type_words(&mut session, "dop853");
         keys(&mut session, &[TextKey::Accept]);
-        let names: Vec<_> = session
-            .runs
-            .panes
-            .iter()
-            .map(|pane| pane.simulation.method().name)
-            .collect();
+        let names: Vec<_> =
+            session.runs.panes.iter().map(|pane| pane.simulation.method().name).collect();
         assert_eq!(names, ["euler", "dop853"]);
         session.act(RunAction::Solvers, 0);
         let count = session.list.as_ref().unwrap().entries().count();

@@ -78,10 +78,7 @@ mod tests {
         });
         assert_eq!(colours, [Some(Quantity::Speed), None]);
         circle.act(RunAction::Arrows, 0);
-        assert_eq!(
-            circle.runs.panes[0].show.field.arrows,
-            Some(Arrows::Velocity)
-        );
+        assert_eq!(circle.runs.panes[0].show.field.arrows, Some(Arrows::Velocity));
     }
 
     #[test]
@@ -97,10 +94,7 @@ mod tests {
         for _ in 0..4 {
             two.act(RunAction::Colour, 0);
         }
-        assert_eq!(
-            two.runs.panes[1].show.colouring.quantity,
-            Some(Quantity::Error)
-        );
+        assert_eq!(two.runs.panes[1].show.colouring.quantity, Some(Quantity::Error));
         crate::session::frames(&mut two, 0.3);
         let ends = [0, 1].map(|k| {
             let pane = &mut two.runs.panes[k];
@@ -133,13 +127,7 @@ mod tests {
                 session.runs.panes[0].show.style
             })
         };
-        assert_eq!(
-            styles("mit"),
-            [Style::Wireframe, Style::Springs, Style::Shaded]
-        );
-        assert_eq!(
-            styles("drop"),
-            [Style::Wireframe, Style::Shaded, Style::Wireframe]
-        );
+        assert_eq!(styles("mit"), [Style::Wireframe, Style::Springs, Style::Shaded]);
+        assert_eq!(styles("drop"), [Style::Wireframe, Style::Shaded, Style::Wireframe]);
     }
 }

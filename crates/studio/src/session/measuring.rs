@@ -36,11 +36,7 @@ impl Progress {
     /// Returns the share of the work that is done; 0 while it is not known.
     pub fn share(&self) -> f32 {
         let [done, expected] = self.work;
-        if expected > 0.0 {
-            (done / expected).clamp(0.0, 1.0) as f32
-        } else {
-            0.0
-        }
+        if expected > 0.0 { (done / expected).clamp(0.0, 1.0) as f32 } else { 0.0 }
     }
 }
 
@@ -163,12 +159,7 @@ impl Measuring {
         };
         let (watch, (sender, answer)) = (Arc::new(Watch::default()), channel());
         let question = task.question;
-        self.job = Some(Job {
-            question,
-            of,
-            watch: watch.clone(),
-            answer,
-        });
+        self.job = Some(Job { question, of, watch: watch.clone(), answer });
         let work = move || {
             let answer = in_own_pool(|| answerer(&task, &*watch));
             let notes = std::mem::take(&mut watch.progress().notes);
@@ -202,10 +193,7 @@ impl Measuring {
             Err(TryRecvError::Empty) => return,
             Err(TryRecvError::Disconnected) => Some(Err("the measurement failed".into())),
         };
-        let known = answer.map(|answer| Known {
-            of: job.of.clone(),
-            answer,
-        });
+        let known = answer.map(|answer| Known { of: job.of.clone(), answer });
         self.known[job.question as usize] = known;
         self.job = None;
     }
@@ -220,9 +208,7 @@ impl Measuring {
 /// does not wait for it.
 fn in_own_pool(work: impl FnOnce() -> Result<Answer, Failure> + Send) -> Result<Answer, Failure> {
     let processors = thread::available_parallelism().map_or(1, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads((processors - 1).max(1))
-        .build();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads((processors - 1).max(1)).build();
     pool.map_err(Failure::run)?.install(work)
 }
 
@@ -359,13 +345,7 @@ mod tests {
             thread::sleep(Duration::from_millis(1));
         }
         let head = format!("{:?} {}", task.question, task.error);
-        Ok(Answer {
-            report: Report {
-                head,
-                ..Report::default()
-            },
-            ..Answer::default()
-        })
+        Ok(Answer { report: Report { head, ..Report::default() }, ..Answer::default() })
     }
 
     #[test]
@@ -381,20 +361,14 @@ mod tests {
             assert!(begun.elapsed() < Duration::from_secs(20));
         }
         let (question, progress, stopping) = measuring.progress().unwrap();
-        assert_eq!(
-            (question, progress.share(), stopping),
-            (Question::Choose, 0.25, false)
-        );
+        assert_eq!((question, progress.share(), stopping), (Question::Choose, 0.25, false));
         measuring.update();
         assert!(measuring.progress().is_some() && measuring.known().is_none());
         measuring.stop();
         answer(&mut measuring);
         let known = measuring.known().unwrap();
         let found = known.answer.as_ref().unwrap();
-        assert_eq!(
-            (&*known.of, &*found.report.head),
-            ("a pendulum", "Choose 0.001")
-        );
+        assert_eq!((&*known.of, &*found.report.head), ("a pendulum", "Choose 0.001"));
         assert!(found.notes == ["a remark"] && !found.complete);
         measuring.forget();
         assert!(measuring.known().is_none());

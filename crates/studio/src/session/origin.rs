@@ -31,13 +31,7 @@ impl Origin {
 
     /// Creates the origin of an unchanged scene.
     pub fn of(source: Source) -> Self {
-        Self {
-            source,
-            grid: None,
-            limits: StepLimits::default(),
-            edited: false,
-            crossed: false,
-        }
+        Self { source, grid: None, limits: StepLimits::default(), edited: false, crossed: false }
     }
 
     /// Builds the scene to begin with it. Its surfaces do not touch if they begin crossed. Fails if
@@ -105,9 +99,7 @@ impl Origin {
             let torn = std::mem::take(&mut description.torn);
             let whole = reduced(description.clone()).build()?.scene;
             let springs = whole.model.network().into_iter();
-            let ends = springs
-                .flat_map(Network::all_springs)
-                .map(|it| [it.i, it.j]);
+            let ends = springs.flat_map(Network::all_springs).map(|it| [it.i, it.j]);
             let there: HashSet<_> = ends.flat_map(|[i, j]| [[i, j], [j, i]]).collect();
             description.torn = torn;
             description.torn.retain(|ends| there.contains(ends));
@@ -209,9 +201,7 @@ impl Passage {
         let renumbered = |i: &u32| Some(number(*i as usize)? as u32);
         moment.drained = moment.drained.iter().filter_map(renumbered).collect();
         let back = self.particles.back();
-        let added = new
-            .all_pins()
-            .filter(|pin| back.number(pin.particle).is_none());
+        let added = new.all_pins().filter(|pin| back.number(pin.particle).is_none());
         moment.pins.extend(added);
         // Ropes, and ends of joints.
         let kind = |it: &Constraint| match it {

@@ -116,11 +116,8 @@ impl Pane {
             }
         } else if due > 0 {
             // Trails and plots have a point per slice, or per step if steps are longer.
-            let at_once = if self.is_followed() {
-                ((ADAPTIVE_SLICE / step) as u64).max(1)
-            } else {
-                due
-            };
+            let at_once =
+                if self.is_followed() { ((ADAPTIVE_SLICE / step) as u64).max(1) } else { due };
             let mut left = due;
             while left > 0 && self.alive() {
                 let _ = self.simulation.take_steps(left.min(at_once));
@@ -181,8 +178,7 @@ impl Pane {
         self.energy = energy.map(|energy| energy.total());
         self.stretch = self.simulation.largest_stretch();
         let computing = self.computing.as_secs_f64();
-        self.samples
-            .take(&self.simulation, energy, self.stretch, computing);
+        self.samples.take(&self.simulation, energy, self.stretch, computing);
         self.limit.update(&self.simulation);
     }
 
@@ -234,8 +230,7 @@ impl Pane {
         defaults: &Defaults,
     ) -> Result<(), Error> {
         self.wanted_step = None;
-        self.simulation
-            .set_method(method, self.control_of(method, defaults))?;
+        self.simulation.set_method(method, self.control_of(method, defaults))?;
         self.wanted = method;
         self.restart_cost();
         Ok(())
@@ -282,10 +277,8 @@ impl Pane {
     ) -> Simulation {
         let before = std::mem::replace(&mut self.simulation, simulation);
         let viewpoint = self.show.presentation.viewpoint;
-        self.show.presentation = Arc::new(Presentation {
-            viewpoint,
-            ..Presentation::clone(presentation)
-        });
+        self.show.presentation =
+            Arc::new(Presentation { viewpoint, ..Presentation::clone(presentation) });
         self.show.hovered = None;
         self.show.springs_of = self.show.springs_of.and_then(|i| particles.number(i));
         self.traces.renumber([particles, bodies]);
@@ -385,18 +378,10 @@ impl LimitWatch {
             let modes = if small { all() } else { vec![] };
             let grows =
                 |mode: &Mode| mode.drag + mode.damping < -MIN_GROWTH_RATIO * mode.frequency();
-            return if modes.iter().any(grows) {
-                vec![]
-            } else {
-                modes
-            };
+            return if modes.iter().any(grows) { vec![] } else { modes };
         };
         let fastest = self.fastest.estimate(free, run.time(), &y[..y.len() / 2]);
-        if small && self.fastest.mixes() {
-            all()
-        } else {
-            fastest.into_iter().collect()
-        }
+        if small && self.fastest.mixes() { all() } else { fastest.into_iter().collect() }
     }
 
     /// Computes the limit of another method from the last modes.
@@ -451,10 +436,7 @@ mod tests {
             watch.update(&run);
         }
         let stretched = watch.limit.unwrap().step;
-        assert!(
-            stretched < 0.985 * flat && stretched > 0.9 * flat,
-            "{stretched}"
-        );
+        assert!(stretched < 0.985 * flat && stretched > 0.9 * flat, "{stretched}");
         watch.set_method(method("implicit"));
         assert!(watch.limit.unwrap().step.is_infinite());
         watch.set_method(method("trapezoid"));

@@ -48,9 +48,7 @@ pub fn axes(settings: &PlotSettings, panes: &[Pane]) -> [Quantity; 2] {
 pub fn toggle(panes: &mut [Pane], pick: Pick) -> Result<(), String> {
     let traces = &panes[0].traces;
     if !traces.has(pick) && traces.len() >= MAX_PICKS {
-        return Err(format!(
-            "{MAX_PICKS} things are plotted already: leave one out."
-        ));
+        return Err(format!("{MAX_PICKS} things are plotted already: leave one out."));
     }
     for pane in panes {
         pane.traces.toggle(pick, &pane.simulation);
@@ -107,11 +105,7 @@ pub fn drive(run: &Simulation) -> Option<f64> {
 /// turning point of another coordinate than that across; if nothing that is plotted has its
 /// velocity, the second variable of the first thing's phase plane.
 fn first_trigger(panes: &[Pane], across: Variable) -> Trigger {
-    let other = if across == Variable::Y {
-        Variable::VelocityX
-    } else {
-        Variable::VelocityY
-    };
+    let other = if across == Variable::Y { Variable::VelocityX } else { Variable::VelocityY };
     let drive = drive(&panes[0].simulation).map(Trigger::Period);
     let trigger = drive.unwrap_or(Trigger::Rises(other, 0.0));
     match kinds(panes).first() {
@@ -129,11 +123,7 @@ fn fires(panes: &[Pane], trigger: Trigger) -> bool {
 /// Returns the trigger of a section of what is plotted: the present one, unless it takes no points.
 pub fn fitting_trigger(panes: &[Pane], across: Variable) -> Trigger {
     let present = panes[0].traces.trigger;
-    if fires(panes, present) {
-        present
-    } else {
-        first_trigger(panes, across)
-    }
+    if fires(panes, present) { present } else { first_trigger(panes, across) }
 }
 
 /// Takes the points of sections of all panes at other events.
@@ -261,9 +251,7 @@ mod tests {
             .map(|i| Pick::at(run, i))
             .collect();
         picks.dedup();
-        let own = picks
-            .into_iter()
-            .map(|it| Variable::Energy.of(&it.read(run)));
+        let own = picks.into_iter().map(|it| Variable::Energy.of(&it.read(run)));
         let energy = run.energy().unwrap();
         let pins = network.pins().map(|(i, _)| {
             let row = Pick::Particle(i).read(run);
@@ -271,9 +259,8 @@ mod tests {
             row.values[6] - network.masses()[i] * gravity.dot(&run.position(i))
         });
         // Springs between pins belong to no particle that moves.
-        let between = network
-            .springs()
-            .filter(|s| network.is_pinned(s.i) && network.is_pinned(s.j));
+        let between =
+            network.springs().filter(|s| network.is_pinned(s.i) && network.is_pinned(s.j));
         let between = between.map(|s| {
             let length = (run.position(s.i) - run.position(s.j)).norm();
             0.5 * s.law.stiffness * (length - s.law.rest_length).powi(2)
@@ -296,10 +283,7 @@ mod tests {
             let mut session = session(&["--scene", &scene]);
             session.run_to(time);
             let [sum, all] = energies(session.runs.first());
-            assert!(
-                (sum - all).abs() < 1e-9 * all.abs().max(1.0),
-                "{scene}: {sum} {all}"
-            );
+            assert!((sum - all).abs() < 1e-9 * all.abs().max(1.0), "{scene}: {sum} {all}");
             let run = session.runs.first();
             let (energy, row) = (run.energy().unwrap(), Pick::Scene.read(run));
             for (part, right) in [
@@ -358,10 +342,7 @@ mod tests {
             let errors = [point.values[0] - x, point.values[3] - v];
             assert!(errors.iter().all(|e| e.abs() < 2e-5), "{errors:?}");
         }
-        set_trigger(
-            &mut session.runs.panes,
-            Trigger::Rises(Variable::VelocityY, 0.0),
-        );
+        set_trigger(&mut session.runs.panes, Trigger::Rises(Variable::VelocityY, 0.0));
         let found: Vec<_> = section(&session);
         let right = [
             [0.716_664_255, 0.622_655_379, -3.231_291_521],
@@ -384,19 +365,9 @@ mod tests {
         let mut session = session(&["r", "0.002", "--scene", "double-pendulum"]);
         let rods = [Pick::Rod(0, 1), Pick::Rod(1, 2)];
         for rod in rods {
-            apply(
-                &mut session.panel.plotting,
-                &mut session.runs.panes,
-                PlotRequest::Toggle(rod),
-            );
+            apply(&mut session.panel.plotting, &mut session.runs.panes, PlotRequest::Toggle(rod));
         }
-        assert!(
-            session
-                .panel
-                .plotting
-                .shown
-                .ends_with(&rods[0].kind().plane())
-        );
+        assert!(session.panel.plotting.shown.ends_with(&rods[0].kind().plane()));
         frames(&mut session, 20.0);
         let run = session.runs.first();
         let mut most = 0.0_f64;
@@ -438,24 +409,15 @@ mod tests {
         let mut session = session(&["r", "0.002", "--scene", "double-pendulum"]);
         pick_first(&mut session.runs.panes);
         let rods = [Pick::Rod(0, 1), Pick::Rod(1, 2)].map(PlotRequest::Toggle);
-        ask(
-            &mut session,
-            [Variable::X, Variable::Length, Variable::Force].map(PlotRequest::Show),
-        );
+        ask(&mut session, [Variable::X, Variable::Length, Variable::Force].map(PlotRequest::Show));
         assert_eq!(session.panel.plotting.shown, [Variable::Y]);
         ask(&mut session, [rods[0]]);
         let all = [Variable::Y, Variable::Angle, Variable::SpinZ];
         assert_eq!(session.panel.plotting.shown, all);
         // What was hidden stays so.
-        ask(
-            &mut session,
-            [Variable::Angle, Variable::SpinZ].map(PlotRequest::Show),
-        );
+        ask(&mut session, [Variable::Angle, Variable::SpinZ].map(PlotRequest::Show));
         let modes = Mode::ALL.map(PlotRequest::Mode);
-        ask(
-            &mut session,
-            [rods[1], rods[1], rods[0]].into_iter().chain(modes),
-        );
+        ask(&mut session, [rods[1], rods[1], rods[0]].into_iter().chain(modes));
         assert_eq!(session.panel.plotting.shown, [Variable::Y]);
     }
 
@@ -464,14 +426,8 @@ mod tests {
         let mut session = session(&["r", "0.002", "--scene", "double-pendulum"]);
         pick_first(&mut session.runs.panes);
         let rods = [Pick::Rod(0, 1), Pick::Rod(1, 2)];
-        let (x, angle) = (
-            Quantity::of_each(Variable::X),
-            Quantity::of_each(Variable::Angle),
-        );
-        let of = |pick, quantity| Quantity {
-            of: Some(pick),
-            ..quantity
-        };
+        let (x, angle) = (Quantity::of_each(Variable::X), Quantity::of_each(Variable::Angle));
+        let of = |pick, quantity| Quantity { of: Some(pick), ..quantity };
         ask(&mut session, rods.map(PlotRequest::Toggle));
         let begun = [
             PlotRequest::Mode(Mode::Phase),
@@ -484,10 +440,7 @@ mod tests {
         assert_eq!(shown(&session), [of(rods[1], angle), x]);
         // An edit that removes the rods asks for nothing.
         toggle(&mut session.runs.panes, rods[1]).unwrap();
-        assert_eq!(
-            shown(&session),
-            Kind::Particle.plane().map(Quantity::of_each)
-        );
+        assert_eq!(shown(&session), Kind::Particle.plane().map(Quantity::of_each));
         let first = Pick::Particle(1);
         ask(&mut session, [PlotRequest::Axis(0, of(first, x))]);
         assert_eq!(shown(&session)[0].of, Some(first));
@@ -514,10 +467,7 @@ mod tests {
         assert!(!section(&session).is_empty());
         // One that fits stays.
         let tilt = Trigger::Rises(Variable::Tilt, 0.5);
-        ask(
-            &mut session,
-            [PlotRequest::Trigger(tilt), PlotRequest::Toggle(picks[0])],
-        );
+        ask(&mut session, [PlotRequest::Trigger(tilt), PlotRequest::Toggle(picks[0])]);
         assert_eq!(trigger(&session), tilt);
     }
 
@@ -572,9 +522,8 @@ mod tests {
             assert!((x * x + v * v - 1.0).abs() < 1e-4, "{row:?}");
         }
         // It went round twice in 4 s.
-        let lefts = rows
-            .windows(2)
-            .filter(|pair| pair[0].values[0] < 0.0 && pair[1].values[0] >= 0.0);
+        let lefts =
+            rows.windows(2).filter(|pair| pair[0].values[0] < 0.0 && pair[1].values[0] >= 0.0);
         assert_eq!(lefts.count(), 2);
     }
 

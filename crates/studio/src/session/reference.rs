@@ -32,9 +32,7 @@ pub struct ReferenceRun {
 /// of the panes if that is less.
 fn method_and_control(panes: &[Pane]) -> (&'static Method, Control) {
     let method = integrators::find("dop853").unwrap_or(&integrators::METHODS[0]);
-    let tolerances = panes
-        .iter()
-        .filter_map(|pane| pane.simulation.control().tolerance());
+    let tolerances = panes.iter().filter_map(|pane| pane.simulation.control().tolerance());
     let tightest = tolerances.fold(1e-6, f64::min);
     (method, Control::Tolerance((1e-4 * tightest).max(1e-13)))
 }
@@ -54,12 +52,7 @@ impl ReferenceRun {
         let mut simulation = Simulation::new(scene, method, control).map_err(Failure::run)?;
         let disturbed = simulation.set_disturbances(run.disturbances());
         disturbed.map_err(Failure::run)?;
-        Ok(Some(Self {
-            simulation,
-            predictability,
-            late: 0,
-            stopped: None,
-        }))
+        Ok(Some(Self { simulation, predictability, late: 0, stopped: None }))
     }
 
     /// Adapts the tolerance to changed methods or steps of the panes.
@@ -198,11 +191,7 @@ impl Predictability {
             let go_on = || !ended.load(Ordering::Relaxed);
             if let Ok(Some(found)) = horizon(&scene, f64::INFINITY, &go_on) {
                 let is_chaotic = found.lyapunov.is_finite();
-                let _ = until.set(if is_chaotic {
-                    found.until
-                } else {
-                    f64::INFINITY
-                });
+                let _ = until.set(if is_chaotic { found.until } else { f64::INFINITY });
             }
         };
         this.search = thread::Builder::new().spawn(search).ok();
@@ -259,10 +248,7 @@ mod tests {
             let method = integrators::find(method).unwrap();
             let simulation =
                 Simulation::new(setup.scene.clone(), method, Control::Step(0.01)).unwrap();
-            Pane::new(
-                simulation,
-                Show::new(setup.presentation.clone(), Manner::default()),
-            )
+            Pane::new(simulation, Show::new(setup.presentation.clone(), Manner::default()))
         };
         assert!(ReferenceRun::new(&[pane("t")]).ok().unwrap().is_none());
         let go = |panes: &mut [Pane], time| {

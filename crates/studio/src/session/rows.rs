@@ -119,11 +119,7 @@ mod tests {
 
     #[test]
     fn twenty_seconds_are_remembered_ten_times_a_second() {
-        let scene = a3_scenes::find("pendulum")
-            .unwrap()
-            .build(None)
-            .unwrap()
-            .scene;
+        let scene = a3_scenes::find("pendulum").unwrap().build(None).unwrap().scene;
         let mut run =
             Simulation::new(scene, integrators::find("r").unwrap(), Control::Step(0.01)).unwrap();
         let mut kept = Samples::default();
@@ -154,12 +150,7 @@ mod tests {
             session.act(RunAction::Step, 0);
         }
         let radius = |p: &[f32; 3]| p[0].hypot(p[1]);
-        assert!(
-            session.runs.panes[0]
-                .show
-                .trail()
-                .all(|p| radius(p) <= 100.0)
-        );
+        assert!(session.runs.panes[0].show.trail().all(|p| radius(p) <= 100.0));
         let last = session.runs.panes[0].show.trail().last().copied();
         session.act(RunAction::Step, 0);
         assert_eq!(session.runs.panes[0].show.trail().last().copied(), last);

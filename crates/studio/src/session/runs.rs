@@ -295,22 +295,16 @@ pub fn next_step(step: f64, longer: bool) -> f64 {
     let decade = step.log10().floor() as i32;
     let rungs = (decade - 1..=decade + 1).flat_map(|d| {
         // Dividing by 10^n rounds correctly; multiplying by 10^-n, which is not exact, does not.
-        LADDER.iter().map(move |rung| {
-            if d < 0 {
-                rung / 10f64.powi(-d)
-            } else {
-                rung * 10f64.powi(d)
-            }
-        })
+        LADDER.iter().map(
+            move |rung| {
+                if d < 0 { rung / 10f64.powi(-d) } else { rung * 10f64.powi(d) }
+            },
+        )
     });
     let next = if longer {
-        rungs
-            .filter(|rung| *rung > step * (1.0 + 1e-9))
-            .reduce(f64::min)
+        rungs.filter(|rung| *rung > step * (1.0 + 1e-9)).reduce(f64::min)
     } else {
-        rungs
-            .filter(|rung| *rung < step * (1.0 - 1e-9))
-            .reduce(f64::max)
+        rungs.filter(|rung| *rung < step * (1.0 - 1e-9)).reduce(f64::max)
     };
     next.unwrap_or(step)
 }
@@ -334,22 +328,11 @@ mod tests {
             .iter()
             .map(|pane| (pane.simulation.method().name, pane.simulation.control()))
             .collect();
-        assert_eq!(
-            methods,
-            [
-                ("euler", Control::Step(0.06)),
-                ("trapezoid", Control::Step(0.012))
-            ]
-        );
+        assert_eq!(methods, [("euler", Control::Step(0.06)), ("trapezoid", Control::Step(0.012))]);
         // One step of the pane with the longest one.
         session.act(RunAction::Reset, 0);
         session.act(RunAction::Step, 0);
-        let steps: Vec<_> = session
-            .runs
-            .panes
-            .iter()
-            .map(|p| p.simulation.steps())
-            .collect();
+        let steps: Vec<_> = session.runs.panes.iter().map(|p| p.simulation.steps()).collect();
         assert_eq!(steps, [1, 5]);
     }
 
@@ -393,10 +376,7 @@ mod tests {
             let (run, error) = (&pane.simulation, pane.error.unwrap());
             let (sin, cos) = run.time().sin_cos();
             let truth = (run.position(0) - Vector3::new(cos, sin, 0.0)).norm();
-            assert!(
-                error < bound && (error - truth).abs() < 0.02 * truth,
-                "{error} {truth}"
-            );
+            assert!(error < bound && (error - truth).abs() < 0.02 * truth, "{error} {truth}");
         }
     }
 
@@ -405,12 +385,7 @@ mod tests {
         let mut session = session(&["compare", "e:0.03", "r:0.07", "--scene", "simple"]);
         session.run_to(1.0);
         assert_eq!(times(&session), [1.0, 1.0]);
-        let errors: Vec<_> = session
-            .runs
-            .panes
-            .iter()
-            .map(|p| p.error.unwrap())
-            .collect();
+        let errors: Vec<_> = session.runs.panes.iter().map(|p| p.error.unwrap()).collect();
         assert!(errors[0] > 0.01 && errors[1] < 1e-5, "{errors:?}");
         let cost = session.runs.panes[0].cost.unwrap();
         assert_eq!(cost.evaluations, 34.0);
@@ -425,10 +400,7 @@ mod tests {
         }
         let times = times(&session);
         assert!(times[0] > 0.0 && times[0] < 0.2, "{times:?}");
-        assert!(
-            times[1] <= times[0] + 1e-9 && times[0] - times[1] < 1.1e-4,
-            "{times:?}"
-        );
+        assert!(times[1] <= times[0] + 1e-9 && times[0] - times[1] < 1.1e-4, "{times:?}");
     }
 
     #[test]
@@ -440,11 +412,7 @@ mod tests {
         assert_eq!(next_step(8.0, true), 10.0);
         let ends = |solver, end: f64, longer| {
             let mut session = session(&[solver, &end.to_string(), "--scene", "chain"]);
-            let action = if longer {
-                RunAction::LongerStep
-            } else {
-                RunAction::ShorterStep
-            };
+            let action = if longer { RunAction::LongerStep } else { RunAction::ShorterStep };
             session.act(action, 0);
             session.runs.first().control().value() == end
         };

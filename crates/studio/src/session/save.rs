@@ -33,9 +33,7 @@ pub fn write_scene(session: &Session, run: &Simulation) -> Result<String, String
         let folder = folder.unwrap_or("".as_ref());
         output::write_new(folder, name, "toml", text.as_bytes())
     };
-    write()
-        .map(|path| path.display().to_string())
-        .map_err(|failure| failure.to_string())
+    write().map(|path| path.display().to_string()).map_err(|failure| failure.to_string())
 }
 
 /// Returns the text of the scene file.
@@ -115,10 +113,7 @@ mod tests {
         let (scene, defaults) = (setup.scene, setup.defaults);
         let name = &run.scene().name;
         assert_eq!(&scene.name, name);
-        assert_eq!(
-            defaults.solver.map(|solver| solver.name),
-            Some(run.method().name)
-        );
+        assert_eq!(defaults.solver.map(|solver| solver.name), Some(run.method().name));
         assert_eq!(defaults.control, Some(run.control()));
         let again = Simulation::new(scene, run.method(), run.control()).unwrap();
         assert_eq!(again.state(), run.state(), "{name}");
@@ -170,9 +165,7 @@ mod tests {
                         Shape::Floor => {
                             network.remove_obstacle(k).unwrap();
                         }
-                        _ => network
-                            .reshape_obstacle(k, Shape::Sphere { radius: 1.25 })
-                            .unwrap(),
+                        _ => network.reshape_obstacle(k, Shape::Sphere { radius: 1.25 }).unwrap(),
                     }
                 }
             });
@@ -211,10 +204,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut session = session(&["r", "0.005", "--scene", "mit-sphere"]);
         run_on(&mut session);
-        for parts in [
-            &["gravity", "bend springs", "sphere"][..],
-            &["drag", "shear springs"],
-        ] {
+        for parts in [&["gravity", "bend springs", "sphere"][..], &["drag", "shear springs"]] {
             let named = parts.iter().map(|name| (format!("without {name}"), 1.0));
             panel::tune(&mut session, &named.collect::<Vec<_>>()).unwrap();
             assert_eq!(session.readings.left_out.len(), parts.len());
@@ -249,14 +239,7 @@ mod tests {
         let mut session = session(&["r", "0.002", "--scene", path.to_str().unwrap()]);
         session.act(RunAction::Wind, 0);
         run_on(&mut session);
-        let torn = session
-            .runs
-            .first()
-            .model()
-            .network()
-            .unwrap()
-            .torn()
-            .to_vec();
+        let torn = session.runs.first().model().network().unwrap().torn().to_vec();
         assert!(torn.len() > 5, "{torn:?}");
         let path = written(&session, folder.path());
         check(&session, &path);
@@ -293,10 +276,7 @@ mod tests {
     /// The camera is written by few digits, which are read as the same numbers.
     #[test]
     fn the_camera_is_written_in_short() {
-        let path = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../docs/scenes/linkage.toml"
-        );
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/linkage.toml");
         let session = session(&["--scene", path]);
         let camera = description(&session, session.runs.first()).camera.unwrap();
         assert_eq!(camera.target, [0.4, 0.3, 0.0]);

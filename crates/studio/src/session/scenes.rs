@@ -66,8 +66,7 @@ impl Scenes {
     pub fn adopt(&mut self, former: Self) {
         let shown = self.shown.source.typed.clone();
         let others = former.asked.into_iter();
-        self.asked
-            .extend(others.filter(|origin| origin.source.typed != shown));
+        self.asked.extend(others.filter(|origin| origin.source.typed != shown));
         self.begun = former.begun;
         self.offered = former.offered;
         self.recent = former.recent;
@@ -137,11 +136,7 @@ impl Scenes {
         let earlier = earlier.map(|(k, path)| Entry {
             number: count + k,
             key: String::new(),
-            name: path
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into(),
+            name: path.file_name().unwrap_or_default().to_string_lossy().into(),
             about: path.display().to_string(),
             current: false,
         });
@@ -203,8 +198,7 @@ impl Scenes {
     pub fn open(&mut self, file: &Path) -> Result<Setup, InputError> {
         let mut origin = Origin::find(&file.to_string_lossy())?;
         let setup = origin.begin()?;
-        self.asked
-            .retain(|it| it.source.typed != origin.source.typed);
+        self.asked.retain(|it| it.source.typed != origin.source.typed);
         self.shown = origin;
         self.asked.insert(0, self.shown.clone());
         self.number = 0;
@@ -219,11 +213,8 @@ impl Scenes {
             return Ok(None);
         };
         let old = self.asked[number].clone();
-        let mut origin = Origin {
-            source: Source::find(&old.source.typed)?.in_window(),
-            crossed: false,
-            ..old
-        };
+        let mut origin =
+            Origin { source: Source::find(&old.source.typed)?.in_window(), crossed: false, ..old };
         let setup = origin.begin()?;
         let (new, old) = (&origin.source.description, &old.source.description);
         let ran = (new.solver != old.solver || new.step != old.step).then_some(&setup.defaults);
@@ -258,23 +249,11 @@ mod tests {
             assert!(session.act(RunAction::NextScene, 0));
         }
         let expected: Vec<_> = a3_scenes::SCENES.iter().map(|entry| entry.name).collect();
-        assert_eq!(
-            seen.iter()
-                .map(|(scene, _)| scene.as_str())
-                .collect::<Vec<_>>(),
-            expected
-        );
+        assert_eq!(seen.iter().map(|(scene, _)| scene.as_str()).collect::<Vec<_>>(), expected);
         // Verlet cannot integrate the scene simple, and returns with the next one.
         let solvers: Vec<_> = seen.iter().map(|(_, solver)| *solver).collect();
         for (scene, solver) in expected.iter().zip(solvers) {
-            assert_eq!(
-                solver,
-                if *scene == "simple" {
-                    "trapezoid"
-                } else {
-                    "verlet"
-                }
-            );
+            assert_eq!(solver, if *scene == "simple" { "trapezoid" } else { "verlet" });
         }
         assert_eq!(session.runs.panes[0].simulation.scene().name, "cloth");
     }
@@ -339,23 +318,9 @@ mod tests {
         let mut session = session(&["v", "0.001"]);
         assert!(session.open(Path::new(FLAG)));
         let name = session.runs.first().scene().name.clone();
-        assert!(
-            session
-                .readings
-                .message
-                .clone()
-                .unwrap()
-                .contains("strip.toml")
-        );
+        assert!(session.readings.message.clone().unwrap().contains("strip.toml"));
         assert!(!session.open(Path::new("/nowhere/flag.toml")));
-        assert!(
-            session
-                .readings
-                .message
-                .clone()
-                .unwrap()
-                .contains("/nowhere/flag.toml")
-        );
+        assert!(session.readings.message.clone().unwrap().contains("/nowhere/flag.toml"));
         assert_eq!(session.runs.first().scene().name, name);
         // The file is one of the scenes from now on.
         session.act(RunAction::NextScene, 0);

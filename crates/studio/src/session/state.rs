@@ -26,10 +26,8 @@ use super::words::Opening;
 /// real time, so that steps may take as long as a slow display. Steps beyond it are dropped, and
 /// the runs are then slower than real time. It is longer in tests, which run in parallel and must
 /// not depend on it.
-const STEP_BUDGET: (Duration, f64) = (
-    Duration::from_millis(if cfg!(test) { 400 } else { 12 }),
-    0.5,
-);
+const STEP_BUDGET: (Duration, f64) =
+    (Duration::from_millis(if cfg!(test) { 400 } else { 12 }), 0.5);
 /// Computing time of the reference in a frame: the larger of a fixed time and a share of the
 /// frame's real time. It is longer in tests, which run in parallel and must not depend on it.
 const REFERENCE_BUDGET: (Duration, f64) =
@@ -92,15 +90,9 @@ impl Session {
             tuning: Tuning::of(&origin, setup),
             scenes: Scenes::new(origin),
             measuring: Measuring::default(),
-            panel: PanelState {
-                film_seconds: DEFAULT_FILM_SECONDS,
-                ..PanelState::default()
-            },
+            panel: PanelState { film_seconds: DEFAULT_FILM_SECONDS, ..PanelState::default() },
             list: None,
-            readings: Readings {
-                paused: opening.paused,
-                ..Readings::default()
-            },
+            readings: Readings { paused: opening.paused, ..Readings::default() },
             meter: Meter::new(),
             pulled: false,
             taken_again: None,
@@ -128,9 +120,7 @@ impl Session {
             };
             let simulated = real * 0.5f64.powi(self.readings.slowness);
             let end = self.tuning.defaults.duration;
-            let left = end
-                .map(|end| end - self.runs.clock)
-                .filter(|left| *left > 0.0);
+            let left = end.map(|end| end - self.runs.clock).filter(|left| *left > 0.0);
             let simulated = left.map_or(simulated, |left| simulated.min(left));
             self.advance(simulated, budget(STEP_BUDGET), budget(REFERENCE_BUDGET));
             self.pause_at_end(left.is_some());
@@ -145,9 +135,7 @@ impl Session {
         let end = end.filter(|end| was_before && self.runs.clock >= *end);
         if let Some(end) = end {
             self.readings.paused = true;
-            self.readings.say(format!(
-                "The scene ends at {end} s: Space goes on, r begins again."
-            ));
+            self.readings.say(format!("The scene ends at {end} s: Space goes on, r begins again."));
         }
     }
 
@@ -162,8 +150,7 @@ impl Session {
             let due = self.timeline.due().filter(|due| *due > self.runs.clock);
             let due = due.filter(|_| self.readings.in_window);
             let next = due.map_or(end, |due| due.min(end));
-            self.runs
-                .advance(next, left(budget), left(reference_budget));
+            self.runs.advance(next, left(budget), left(reference_budget));
             if self.readings.in_window && self.runs.count_alive() < alive {
                 self.record_blow_up();
                 break;
@@ -174,8 +161,7 @@ impl Session {
                 break;
             }
         }
-        self.meter
-            .count_steps(self.runs.clock - start, begun.elapsed());
+        self.meter.count_steps(self.runs.clock - start, begun.elapsed());
         self.readings.read_reference(self.runs.reference.as_ref());
         self.record(false);
     }
@@ -530,10 +516,7 @@ mod tests {
 
     #[test]
     fn a_scene_pauses_at_its_end_and_can_go_on() {
-        let ellipse = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../docs/scenes/ellipse.toml"
-        );
+        let ellipse = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/ellipse.toml");
         let mut session = session(&["v", "0.005", "--scene", ellipse]);
         frames(&mut session, 1.5);
         let time = |session: &Session| session.runs.first().time();

@@ -49,10 +49,7 @@ fn places(session: &Session) -> Vec<f64> {
 #[test]
 fn a_tangled_scene_opens_and_comes_apart() {
     let folder = tempfile::tempdir().unwrap();
-    let tangled = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../docs/scenes/tangled.toml"
-    );
+    let tangled = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/tangled.toml");
     let text = std::fs::read_to_string(tangled).unwrap();
     let text = text.replace("untangle = true\n", "");
     let path = folder.path().join("crossed.toml");
@@ -157,9 +154,7 @@ fn panes_come_up_to_four_and_go_down_to_one() {
     assert!(session.remove_pane(0));
     let steps = |session: &Session| -> Vec<f64> {
         let panes = session.runs.panes.iter();
-        panes
-            .map(|pane| pane.simulation.control().value())
-            .collect()
+        panes.map(|pane| pane.simulation.control().value()).collect()
     };
     assert_eq!(steps(&session), [0.02, 0.005, 0.001]);
     frames(&mut session, 0.1);
@@ -185,8 +180,5 @@ fn a_run_that_blew_up_or_an_unfit_method_is_not_continued() {
     assert_eq!(circle.runs.panes.len(), 1);
     circle.use_setting(0, setting("trapezoid", 0.03));
     let run = circle.runs.first();
-    assert_eq!(
-        (run.method().name, run.control()),
-        ("trapezoid", Control::Step(0.03))
-    );
+    assert_eq!((run.method().name, run.control()), ("trapezoid", Control::Step(0.03)));
 }

@@ -218,9 +218,7 @@ mod tests {
         }
         let times = |seconds, interval| -> Vec<f64> {
             let moments = timeline.last(seconds, interval).into_iter();
-            moments
-                .map(|runs| runs[0].as_ref().unwrap().time())
-                .collect()
+            moments.map(|runs| runs[0].as_ref().unwrap().time()).collect()
         };
         let near = |times: &[f64], right: &[f64]| {
             assert_eq!(times.len(), right.len(), "{times:?}");
@@ -279,10 +277,7 @@ mod tests {
         }
         assert!(timeline.go(-3) && timeline.go(-3) && !timeline.go(-1));
         let position = timeline.position().unwrap();
-        assert_eq!(
-            (position.share, position.back, position.span),
-            (0.0, 4.0, 4.0)
-        );
+        assert_eq!((position.share, position.back, position.span), (0.0, 4.0, 4.0));
         assert!(timeline.go_to(0.5));
         assert_eq!(timeline.position().unwrap().back, 2.0);
         assert!(timeline.go(10));
@@ -297,16 +292,10 @@ mod tests {
         let mut session = session(&["t", "0.01", "--scene", "cloth"]);
         session.readings.in_window = true;
         frames(&mut session, 1.0);
-        let newest = (
-            session.runs.first().time(),
-            session.runs.first().state().to_vec(),
-        );
+        let newest = (session.runs.first().time(), session.runs.first().state().to_vec());
         session.act(RunAction::Scrub(-10), 0);
         let place = session.readings.timeline.unwrap();
-        assert!(
-            session.readings.paused && (place.back - 1.0 / 6.0).abs() < 0.02,
-            "{place:?}"
-        );
+        assert!(session.readings.paused && (place.back - 1.0 / 6.0).abs() < 0.02, "{place:?}");
         let (time, steps) = (session.runs.first().time(), session.runs.first().steps());
         assert!(time < newest.0 && (time - 0.01 * steps as f64).abs() < 1e-9);
         let then = session.runs.first().state().to_vec();
@@ -332,10 +321,7 @@ mod tests {
         );
         session.act(RunAction::Reset, 0);
         session.act(RunAction::Scrub(-1), 0);
-        assert_eq!(
-            (session.runs.first().time(), session.readings.rewound()),
-            (0.0, false)
-        );
+        assert_eq!((session.runs.first().time(), session.readings.rewound()), (0.0, false));
     }
 
     #[test]

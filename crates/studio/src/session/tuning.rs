@@ -139,17 +139,10 @@ mod tests {
     #[test]
     fn what_is_hidden_is_refused_and_nothing_changes() {
         let mut session = session(&["t", "0.01"]);
-        session.panel.hidden = Hidden {
-            panel: true,
-            solvers: true,
-            lessons: true,
-        };
-        for action in [
-            RunAction::Panel,
-            RunAction::Lessons,
-            RunAction::Solvers,
-            RunAction::Solver(3),
-        ] {
+        session.panel.hidden = Hidden { panel: true, solvers: true, lessons: true };
+        for action in
+            [RunAction::Panel, RunAction::Lessons, RunAction::Solvers, RunAction::Solver(3)]
+        {
             session.readings.message = None;
             assert!(!session.act(action, 0));
             let said = session.readings.message.take().unwrap();

@@ -40,10 +40,7 @@ struct Followed {
 impl View {
     /// Creates a view whose camera follows nothing.
     pub fn new(camera: Camera) -> Self {
-        Self {
-            camera,
-            followed: None,
-        }
+        Self { camera, followed: None }
     }
 
     /// Replaces the camera, and keeps the projection.
@@ -57,11 +54,7 @@ impl View {
     pub fn toggle_projection(&mut self) -> &'static str {
         let parallel = !self.camera.is_parallel();
         self.camera.set_parallel(parallel);
-        if parallel {
-            "The projection is orthographic."
-        } else {
-            "The projection is perspective."
-        }
+        if parallel { "The projection is orthographic." } else { "The projection is perspective." }
     }
 
     /// Follows a particle of a pane, or stops if it is already followed or `None`. Returns a
@@ -89,10 +82,7 @@ impl View {
     pub fn renumber(&mut self, particles: Splice) {
         self.followed = self.followed.and_then(|followed| {
             let particle = particles.number(followed.particle)?;
-            Some(Followed {
-                particle,
-                ..followed
-            })
+            Some(Followed { particle, ..followed })
         });
     }
 
@@ -106,8 +96,7 @@ impl View {
         if let Some(followed) = &mut self.followed {
             let run = &panes[followed.pane].simulation;
             let now = show::to_f32(run.position(followed.particle));
-            self.camera
-                .shift([0, 1, 2].map(|axis| now[axis] - followed.at[axis]));
+            self.camera.shift([0, 1, 2].map(|axis| now[axis] - followed.at[axis]));
             followed.at = now;
         }
     }
@@ -248,18 +237,11 @@ mod tests {
         let end = opened.runs.first().position(0);
         assert!(end.x - start.x > 0.3, "{end}");
         let at = |place| {
-            let ([x, _], _) = opened
-                .view
-                .camera
-                .project(show::to_f32(place), 1.5)
-                .unwrap();
+            let ([x, _], _) = opened.view.camera.project(show::to_f32(place), 1.5).unwrap();
             x
         };
         let (first, last) = (at(start), at(end));
-        assert!(
-            first > 0.05 && last < 0.95 && last - first > 0.25,
-            "{first} to {last}"
-        );
+        assert!(first > 0.05 && last < 0.95 && last - first > 0.25, "{first} to {last}");
         let named = format!("{text}[camera]\neye = [0, 1, 4]\ntarget = [0, 0.1, 0]\n");
         let eye = open(&named).view.camera.eye();
         assert!((eye.z - 4.0).abs() < 1e-5, "{eye}");
@@ -277,10 +259,7 @@ mod tests {
                 let p = run.position(i);
                 let point = [p.x as f32, p.y as f32, p.z as f32];
                 let ([x, y], _) = session.view.camera.project(point, 1.6).unwrap();
-                assert!(
-                    (0.0..1.0).contains(&x) && (0.0..1.0).contains(&y),
-                    "{i}: {x} {y}"
-                );
+                assert!((0.0..1.0).contains(&x) && (0.0..1.0).contains(&y), "{i}: {x} {y}");
             }
         }
         // The fourth view is from the front again.

@@ -90,8 +90,7 @@ impl Words<'_> {
     /// Reads an option that has no value.
     fn flag(&self) -> Result<bool, Failure> {
         let refuse = |value| format!("`{}` takes no value: leave out {value}", self.option);
-        self.value
-            .map_or(Ok(true), |it| Err(Failure::usage(refuse(it))))
+        self.value.map_or(Ok(true), |it| Err(Failure::usage(refuse(it))))
     }
 }
 
@@ -105,15 +104,8 @@ fn is_plain(word: &str) -> bool {
 /// # Errors
 /// A word is wrong, or the command opens no window.
 pub fn read(words: &[String]) -> Result<Opening, Failure> {
-    let mut opening = Opening {
-        scene: "cloth".into(),
-        ..Opening::default()
-    };
-    let mut words = Words {
-        rest: words.iter().peekable(),
-        option: "",
-        value: None,
-    };
+    let mut opening = Opening { scene: "cloth".into(), ..Opening::default() };
+    let mut words = Words { rest: words.iter().peekable(), option: "", value: None };
     let compared = words.rest.next_if(|word| *word == "compare").is_some();
     let (mut plain, mut given) = (vec![], vec![]);
     while let Some(word) = words.rest.next() {
@@ -139,10 +131,8 @@ pub fn read(words: &[String]) -> Result<Opening, Failure> {
         set(&mut opening, &mut words)?;
     }
     let is_given = |option| given.contains(&option);
-    for (one, other) in [
-        ("--wireframe", "--springs"),
-        ("--self-collision", "--no-self-collision"),
-    ] {
+    for (one, other) in [("--wireframe", "--springs"), ("--self-collision", "--no-self-collision")]
+    {
         if is_given(one) && is_given(other) {
             let why = format!("give either `{one}` or `{other}`, not both");
             return Err(Failure::usage(why));
@@ -153,9 +143,7 @@ pub fn read(words: &[String]) -> Result<Opening, Failure> {
     if compared {
         let mut alone = ["--springs-of", "--watch", "--resume"].into_iter();
         if let Some(option) = alone.find(|option| is_given(option)) {
-            return Err(Failure::usage(format!(
-                "there is no option `{option}` here"
-            )));
+            return Err(Failure::usage(format!("there is no option `{option}` here")));
         }
         check_count(plain.len())?;
         for word in plain {
@@ -171,18 +159,11 @@ pub fn read(words: &[String]) -> Result<Opening, Failure> {
     let mut plain = plain.into_iter();
     let method = plain.next().map(|word| {
         solver(word).map_err(|why| {
-            wrong(
-                word,
-                format!("{why}; a link or a lesson has no command except compare"),
-            )
+            wrong(word, format!("{why}; a link or a lesson has no command except compare"))
         })
     });
-    let step = plain
-        .next()
-        .map(|word| step(word).map_err(|why| wrong(word, why)));
-    opening
-        .methods
-        .push((method.transpose()?, step.transpose()?));
+    let step = plain.next().map(|word| step(word).map_err(|why| wrong(word, why)));
+    opening.methods.push((method.transpose()?, step.transpose()?));
     match plain.next() {
         Some(word) => Err(Failure::usage(format!("`{word}` is one word too many"))),
         None => Ok(opening),

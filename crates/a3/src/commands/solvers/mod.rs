@@ -73,10 +73,7 @@ fn all() -> String {
             } else if m.damped_evaluations == m.evaluations {
                 m.evaluations.to_string()
             } else {
-                format!(
-                    "{} ({} if springs are damped)",
-                    m.evaluations, m.damped_evaluations
-                )
+                format!("{} ({} if springs are damped)", m.evaluations, m.damped_evaluations)
             },
             match m.default_control {
                 Control::Step(step) => format!("{step} s"),

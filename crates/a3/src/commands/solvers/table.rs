@@ -53,10 +53,7 @@ fn families(kinds: &[Kind]) -> Result<Vec<Family>, Fault> {
         let is_same = |family: &&mut Family| family.refusals == refusals;
         match families.iter_mut().find(is_same) {
             Some(family) => family.letters.push(letter),
-            None => families.push(Family {
-                letters: vec![letter],
-                refusals,
-            }),
+            None => families.push(Family { letters: vec![letter], refusals }),
         }
     }
     Ok(families)
@@ -79,9 +76,7 @@ fn laid_out(rows: &[Vec<String>]) -> String {
     let widths: Vec<_> = (0..rows[0].len()).filter_map(width).collect();
     let line = |cells: &[String]| {
         let cells = cells.iter().zip(&widths);
-        let padded: Vec<_> = cells
-            .map(|(cell, width)| format!("{cell:<width$}"))
-            .collect();
+        let padded: Vec<_> = cells.map(|(cell, width)| format!("{cell:<width$}")).collect();
         format!("| {} |\n", padded.join(" | "))
     };
     let rule: Vec<_> = widths.iter().map(|width| "-".repeat(*width)).collect();

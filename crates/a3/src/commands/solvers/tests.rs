@@ -13,20 +13,10 @@ fn solvers_do_what_the_table_says() {
         for method in integrators::METHODS {
             let refused = method.refusal(scene.model.system());
             let control = Control::Step(1e-3);
-            let control = if method.is_adaptive() {
-                Control::Tolerance(1e-3)
-            } else {
-                control
-            };
+            let control = if method.is_adaptive() { Control::Tolerance(1e-3) } else { control };
             let run = Simulation::new(scene.clone(), method, control);
             let run = run.and_then(|mut run| run.advance_to(2e-3));
-            assert_eq!(
-                run.is_ok(),
-                refused.is_none(),
-                "{} on {}",
-                method.name,
-                kind.0
-            );
+            assert_eq!(run.is_ok(), refused.is_none(), "{} on {}", method.name, kind.0);
         }
     }
 }
@@ -37,10 +27,7 @@ fn the_manual_has_the_table() {
     let manual = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/methods.md");
     let text = std::fs::read_to_string(manual).unwrap();
     let table = table().unwrap();
-    assert!(
-        text.contains(&table),
-        "put this into docs/methods.md:\n{table}"
-    );
+    assert!(text.contains(&table), "put this into docs/methods.md:\n{table}");
 }
 
 /// A solver that changes its order is listed with all its orders, as in the manual.

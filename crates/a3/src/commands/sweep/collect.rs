@@ -104,9 +104,7 @@ fn diagram(sweep: &Sweep, plan: &Plan, records: &[(usize, Record)]) -> WorkPreci
         }
     }
     let problems = plan.variants.iter().enumerate().map(|(number, variant)| {
-        let of = records
-            .iter()
-            .filter(|(place, _)| plan.runs[*place].variant == number);
+        let of = records.iter().filter(|(place, _)| plan.runs[*place].variant == number);
         let records: Vec<_> = of.map(|(_, record)| record).collect();
         let mut problem = picture::problem(&records, &[], &methods, variant.metric, false);
         problem.title = title(sweep, variant);

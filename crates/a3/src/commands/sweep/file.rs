@@ -64,10 +64,7 @@ impl Sweep {
     /// Reads the file.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let file = path.to_string_lossy().into_owned();
-        let wrong = |why: String| InputError::File {
-            file: file.clone(),
-            why,
-        };
+        let wrong = |why: String| InputError::File { file: file.clone(), why };
         let size = fs::metadata(path)
             .map_err(|e| wrong(format!("it could not be read: {}", terminal::reason(&e))))?;
         if !size.is_file() || size.len() > MAX_SIZE {
@@ -75,10 +72,8 @@ impl Sweep {
         }
         output::is_read(path);
         let text = fs::read_to_string(path).map_err(|e| wrong(terminal::reason(&e)))?;
-        let text: Text = a3_scenes::read(&text).map_err(|fault| InputError::Text {
-            file: Some(file.clone()),
-            fault,
-        })?;
+        let text: Text = a3_scenes::read(&text)
+            .map_err(|fault| InputError::Text { file: Some(file.clone()), fault })?;
         Self::new(path, &text).map_err(wrong)
     }
 
@@ -130,10 +125,7 @@ impl Sweep {
                 factor => Some(numbers(STIFFNESS, factor.as_ref(), &factors)?),
             },
             error,
-            scope: Scope {
-                particle: text.particle,
-                at_end: text.at_end,
-            },
+            scope: Scope { particle: text.particle, at_end: text.at_end },
             keys: keys.collect::<Result<_, String>>()?,
         };
         for method in &sweep.methods {
@@ -156,11 +148,7 @@ impl Sweep {
 
     /// Returns the steps or tolerances of a method.
     pub fn settings(&self, method: &Method) -> &[f64] {
-        if is_adaptive(method) {
-            &self.tolerances
-        } else {
-            &self.steps
-        }
+        if is_adaptive(method) { &self.tolerances } else { &self.steps }
     }
 
     /// Returns the names of the swept keys, including the stiffness.

@@ -54,11 +54,7 @@ impl Folder {
             Err(why) if why.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(why) => return Err(fault(terminal::reason(&why))),
         };
-        let bytes = if length > MAX_SIZE {
-            Ok(vec![])
-        } else {
-            fs::read(&path)
-        };
+        let bytes = if length > MAX_SIZE { Ok(vec![]) } else { fs::read(&path) };
         let bytes = bytes.map_err(|why| fault(terminal::reason(&why)))?;
         let text = String::from_utf8(bytes).ok();
         let is_of = |record: &Record| {

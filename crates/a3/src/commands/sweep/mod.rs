@@ -73,11 +73,7 @@ fn lines(sweep: &Sweep, plan: &Plan) -> String {
     for run in &plan.runs {
         let variant = &plan.variants[run.variant];
         let (scene, method) = (terminal::visible(&variant.name), run.method.name);
-        let _ = write!(
-            text,
-            "{}\t{scene}\t{method}\t{}\t{}",
-            run.id, run.setting, variant.until
-        );
+        let _ = write!(text, "{}\t{scene}\t{method}\t{}\t{}", run.id, run.setting, variant.until);
         for (name, value) in sweep.names().iter().zip(&variant.values) {
             let value = terminal::visible(&value.to_string());
             let _ = write!(text, "\t{name}={value}");

@@ -67,13 +67,8 @@ impl Plan {
             let keys = sweep.keys.iter().map(|(_, values)| values.len());
             keys.chain(sweep.stiffness.as_ref().map(Vec::len))
         };
-        let scenes = lists().fold(sweep.scenes.len() as u128, |n, m| {
-            n.saturating_mul(m as u128)
-        });
-        let each: u128 = methods
-            .iter()
-            .map(|m| sweep.settings(m).len() as u128)
-            .sum();
+        let scenes = lists().fold(sweep.scenes.len() as u128, |n, m| n.saturating_mul(m as u128));
+        let each: u128 = methods.iter().map(|m| sweep.settings(m).len() as u128).sum();
         let count = scenes.saturating_mul(each);
         if count > MAX_RUNS {
             return Err(Failure::usage(format!(
@@ -93,20 +88,13 @@ impl Plan {
             })
             .collect::<Result<Vec<Planned>, String>>()
             .map_err(|why| Failure::usage(format!("{}: {why}", sweep.file)))?;
-        let mut plan = Self {
-            variants: vec![],
-            runs: vec![],
-            refusals: vec![],
-        };
+        let mut plan = Self { variants: vec![], runs: vec![], refusals: vec![] };
         let mut seen = std::collections::BTreeSet::new();
         for (number, (variant, runs, refusals)) in planned.into_iter().enumerate() {
             plan.variants.push(variant);
             // Values that are listed twice give one run.
             let new = runs.into_iter().filter(|run| seen.insert(run.id));
-            plan.runs.extend(new.map(|run| Run {
-                variant: number,
-                ..run
-            }));
+            plan.runs.extend(new.map(|run| Run { variant: number, ..run }));
             for refusal in refusals {
                 if !plan.refusals.contains(&refusal) {
                     plan.refusals.push(refusal);
@@ -115,10 +103,7 @@ impl Plan {
         }
         if plan.runs.is_empty() {
             let why = plan.refusals.first().map_or("", String::as_str);
-            return Err(Failure::usage(format!(
-                "{}: the sweep has no runs: {why}",
-                sweep.file
-            )));
+            return Err(Failure::usage(format!("{}: the sweep has no runs: {why}", sweep.file)));
         }
         Ok(plan)
     }
@@ -179,10 +164,7 @@ fn variant(
         until.ok_or_else(|| format!("the scene {} has no duration: give `until`", scene.name))?;
     check_metric(sweep.error, &scene).map_err(|failure| failure.to_string())?;
     variant.metric = sweep.error;
-    variant.scope = sweep
-        .scope
-        .checked(&scene.model)
-        .map_err(|why| why.to_string())?;
+    variant.scope = sweep.scope.checked(&scene.model).map_err(|why| why.to_string())?;
     let mut hash = Hash::default();
     hash.add(VERSION.bytes().chain([0]));
     hash.add(source.text().bytes().chain([0]));
@@ -201,12 +183,7 @@ fn variant(
         runs.extend(sweep.settings(method).iter().map(|&setting| {
             let mut hash = hash;
             hash.add(method.name.bytes().chain(setting.to_le_bytes()));
-            Run {
-                id: Id::new(hash.value()),
-                variant: 0,
-                method,
-                setting,
-            }
+            Run { id: Id::new(hash.value()), variant: 0, method, setting }
         }));
     }
     Ok((variant, runs, refusals))

@@ -142,10 +142,7 @@ mod tests {
         let range = json!({"from": 0.001, "to": 0.1, "count": 3});
         assert_eq!(all(&range), Ok(vec![json!(0.001), json!(0.01), json!(0.1)]));
         let seeds = json!({"from": 1, "to": 4, "count": 4, "spacing": "linear"});
-        assert_eq!(
-            all(&seeds),
-            Ok(vec![json!(1), json!(2), json!(3), json!(4)])
-        );
+        assert_eq!(all(&seeds), Ok(vec![json!(1), json!(2), json!(3), json!(4)]));
         let one = json!({"from": 5.5, "to": 9, "count": 1});
         assert_eq!(all(&one), Ok(vec![json!(5.5)]));
         for wrong in [

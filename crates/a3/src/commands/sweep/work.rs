@@ -68,11 +68,7 @@ fn run_variant(
         ..Record::default()
     };
     runs.par_iter().try_for_each(|run| {
-        let like = Record {
-            solver: run.method.name.into(),
-            setting: run.setting,
-            ..blank.clone()
-        };
+        let like = Record { solver: run.method.name.into(), setting: run.setting, ..blank.clone() };
         let go_on = &interrupt::go_on;
         let (record, _) = compared(like, &scene, run.method, &reference, &mut [], go_on)?;
         folder.write(run.id, record)?;

@@ -10,38 +10,23 @@ fn exports_that_cannot_be_are_refused_before_the_work() {
     let folder = &Folder::new();
     let long = |more: &str| format!("simulate v 0.01 --until 100 --grid {more}");
     for (words, says) in [
-        (
-            "5x5 --output x.txt",
-            ".json, .csv, .npz, .obj, .pc2, .glb, .usda or .vtu",
-        ),
+        ("5x5 --output x.txt", ".json, .csv, .npz, .obj, .pc2, .glb, .usda or .vtu"),
         ("5x5 --output - --fps 25", "final state"),
         ("5x5 --output - --summary -", "not both"),
         ("5x5 --output x.json --summary s.txt", ".json"),
         ("5x5 --output x.json --fps 0", "such as 30"),
         ("5x5 --output x.obj --fps 25", "cloth-####.obj"),
         ("5x5 --output x-###.obj", "4 digits"),
-        (
-            "5x5 --output x.glb",
-            "3001 frames are too many for a .glb, which has at most 600",
-        ),
-        (
-            "1000x1000 --output x.glb --fps 5",
-            "11.2 GiB, and at most 4 GiB",
-        ),
+        ("5x5 --output x.glb", "3001 frames are too many for a .glb, which has at most 600"),
+        ("1000x1000 --output x.glb --fps 5", "11.2 GiB, and at most 4 GiB"),
         ("1000x1000 --output x.pc2", "33.5 GiB, and at most 16 GiB"),
-        (
-            "1000x1000 --output x.npz --fps 5",
-            "22.4 GiB, and at most 4 GiB",
-        ),
+        ("1000x1000 --output x.npz --fps 5", "22.4 GiB, and at most 4 GiB"),
         ("1000x1000 --output x.csv", "GiB"),
         ("1000x1000 --output x-####.obj", "GiB"),
         ("1000x1000 --output x.json --fps 30", "GiB"),
     ] {
         let line = complaint(&a3(folder, long(words)), 2);
-        assert!(
-            line.starts_with("error: ") && line.contains(says),
-            "{words:?}: {line}"
-        );
+        assert!(line.starts_with("error: ") && line.contains(says), "{words:?}: {line}");
     }
     assert_eq!(folder.count(), 0);
 }
@@ -70,10 +55,7 @@ fn a_run_that_blows_up_leaves_only_the_whole_files_of_a_sequence() {
     let line = run("x-###.obj --fps 25");
     let count = folder.count();
     assert!((2..200).contains(&count), "{count}");
-    assert!(
-        line.contains(&format!("x-###.obj has the first {count} of 201 frames")),
-        "{line}"
-    );
+    assert!(line.contains(&format!("x-###.obj has the first {count} of 201 frames")), "{line}");
     for entry in fs::read_dir(folder).unwrap() {
         let obj = fs::read_to_string(entry.unwrap().path()).unwrap();
         assert!(obj.contains("\nf ") && !obj.contains("NaN") && !obj.contains("inf"));
@@ -88,9 +70,7 @@ fn an_interrupted_export_leaves_nothing() {
         let words = format!("simulate v 1e-5 --until 19 --output {output}");
         let child = command(folder, words).spawn().unwrap();
         std::thread::sleep(std::time::Duration::from_millis(400));
-        let interrupt = Command::new("kill")
-            .args(["-INT", &child.id().to_string()])
-            .status();
+        let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
         assert!(interrupt.unwrap().success());
         let line = complaint(&child.wait_with_output().unwrap(), 130);
         assert_eq!(line, "interrupted: nothing was written");

@@ -22,17 +22,11 @@ fn an_obj_has_the_surface_of_a_fluid_after_its_particles() {
             let has = |line: &&str| line.starts_with(&format!("{keyword} "));
             text.lines().filter(has).count()
         };
-        assert_eq!(
-            ["v", "p", "f"].map(|keyword| count(particles, keyword)),
-            [962, 512, 0]
-        );
+        assert_eq!(["v", "p", "f"].map(|keyword| count(particles, keyword)), [962, 512, 0]);
         let [vertices, normals, faces] = ["v", "vn", "f"].map(|keyword| count(liquid, keyword));
         // Each vertex of the file has a normal.
         assert_eq!(count(particles, "vn"), 962);
-        assert!(
-            vertices == normals && vertices > 1000 && faces > vertices,
-            "{vertices}, {faces}"
-        );
+        assert!(vertices == normals && vertices > 1000 && faces > vertices, "{vertices}, {faces}");
         for line in liquid.lines().filter(|line| line.starts_with("f ")) {
             for corner in line.split(' ').skip(1) {
                 let (v, vn) = corner.split_once("//").unwrap();

@@ -27,10 +27,7 @@ fn glb_goes_from_frame_to_frame() {
 
     let animation = read.animations().next().unwrap();
     let channel = animation.channels().next().unwrap();
-    assert_eq!(
-        channel.target().property(),
-        gltf::animation::Property::MorphTargetWeights
-    );
+    assert_eq!(channel.target().property(), gltf::animation::Property::MorphTargetWeights);
     assert_eq!(channel.target().node().index(), node.index());
     let reader = channel.reader(data);
     let times: Vec<_> = reader.read_inputs().unwrap().collect();
@@ -65,13 +62,11 @@ fn glb_goes_from_frame_to_frame() {
     });
 
     // The ranges of positions are true.
-    for accessor in read
-        .accessors()
-        .filter(|accessor| accessor.min().is_some() && accessor.size() == 12)
+    for accessor in
+        read.accessors().filter(|accessor| accessor.min().is_some() && accessor.size() == 12)
     {
-        let vectors: Vec<[f32; 3]> = gltf::accessor::Iter::new(accessor.clone(), data)
-            .unwrap()
-            .collect();
+        let vectors: Vec<[f32; 3]> =
+            gltf::accessor::Iter::new(accessor.clone(), data).unwrap().collect();
         let range = |pick: fn(f32, f32) -> f32| {
             let most = |c: usize| vectors.iter().map(|v| v[c]).reduce(pick).unwrap();
             serde_json::json!([most(0), most(1), most(2)])
@@ -85,10 +80,9 @@ fn glb_goes_from_frame_to_frame() {
 fn glb_without_a_surface_is_lines_and_points() {
     use gltf::mesh::Mode;
     let folder = &Folder::new();
-    for (scene, modes) in [
-        ("chain", &[(Mode::Lines, 6), (Mode::Points, 4)][..]),
-        ("simple", &[(Mode::Points, 1)]),
-    ] {
+    for (scene, modes) in
+        [("chain", &[(Mode::Lines, 6), (Mode::Points, 4)][..]), ("simple", &[(Mode::Points, 1)])]
+    {
         write(folder, scene, "x.glb");
         let read = gltf::Gltf::from_slice(&folder.bytes("x.glb")).unwrap();
         let mesh = read.meshes().next().unwrap();
@@ -97,10 +91,7 @@ fn glb_without_a_surface_is_lines_and_points() {
             .map(|primitive| (primitive.mode(), primitive.indices().unwrap().count()))
             .collect();
         assert_eq!(found, modes);
-        assert!(
-            mesh.primitives()
-                .all(|primitive| primitive.morph_targets().len() == 6)
-        );
+        assert!(mesh.primitives().all(|primitive| primitive.morph_targets().len() == 6));
     }
 }
 
@@ -114,18 +105,11 @@ fn assimp_reads_surfaces_and_animations() {
     write(folder, "cloth", "x.obj");
     for (file, animations) in [("x.glb", "1"), ("x.obj", "0")] {
         let says = asked(folder, "assimp", ["info", file]);
-        for (what, right) in [
-            ("Vertices:", "400"),
-            ("Faces:", "722"),
-            ("Animations:", animations),
-        ] {
+        for (what, right) in [("Vertices:", "400"), ("Faces:", "722"), ("Animations:", animations)]
+        {
             let line = says.lines().find(|line| line.starts_with(what));
             let line = line.unwrap_or_else(|| panic!("no {what} in\n{says}"));
-            assert_eq!(
-                line.split_whitespace().last(),
-                Some(right),
-                "{file}: {line}"
-            );
+            assert_eq!(line.split_whitespace().last(), Some(right), "{file}: {line}");
         }
     }
 }
@@ -148,12 +132,7 @@ fn khronos_finds_nothing_to_complain_of() {
                 .current_dir(folder)
                 .output()
                 .unwrap();
-            assert_eq!(
-                text(&output.stdout),
-                "0 0 0 0\n",
-                "{}",
-                text(&output.stderr)
-            );
+            assert_eq!(text(&output.stdout), "0 0 0 0\n", "{}", text(&output.stderr));
         }
     }
 }

@@ -12,9 +12,7 @@ fn obj_sequences_have_surfaces_with_smooth_normals() {
     run("cloth", |k, simulation| {
         let file = folder.join(format!("f-{:02}.obj", k + 1));
         let (models, _) = tobj::load_obj(file, &tobj::LoadOptions::default()).unwrap();
-        let [model] = &models[..] else {
-            panic!("one object")
-        };
+        let [model] = &models[..] else { panic!("one object") };
         assert_eq!(model.name, "cloth");
         let mesh = &model.mesh;
         let (right, normals) = (positions(simulation), normals(simulation));
@@ -25,10 +23,7 @@ fn obj_sequences_have_surfaces_with_smooth_normals() {
             [numbers[i], numbers[i + 1], numbers[i + 2]]
         };
         for (c, corner) in corners.iter().enumerate() {
-            assert_eq!(
-                at(&mesh.positions, mesh.indices[c]),
-                right[*corner as usize]
-            );
+            assert_eq!(at(&mesh.positions, mesh.indices[c]), right[*corner as usize]);
             let normal = at(&mesh.normals, mesh.normal_indices[c]);
             assert!(distance(normal, normals[*corner as usize]) < 1e-6);
         }
@@ -106,10 +101,7 @@ fn what_has_no_surface_is_points_and_lines() {
             let network = simulation.model().network();
             let ends = network.into_iter().flat_map(a3_core::Network::springs);
             for (spring, words) in ends.zip(lines(&obj, "l")) {
-                assert_eq!(
-                    words[1..],
-                    [(spring.i + 1).to_string(), (spring.j + 1).to_string()]
-                );
+                assert_eq!(words[1..], [(spring.i + 1).to_string(), (spring.j + 1).to_string()]);
             }
         });
     }
@@ -152,9 +144,8 @@ fn pc2_has_the_positions_of_all_frames() {
 /// Returns the vertices that Blender keeps when it reads an OBJ: those in faces or lines, or all if
 /// there are none.
 fn kept(obj: &str) -> Vec<[f32; 3]> {
-    let all: Vec<[f32; 3]> = lines(obj, "v")
-        .map(|words| [1, 2, 3].map(|k| words[k].parse().unwrap()))
-        .collect();
+    let all: Vec<[f32; 3]> =
+        lines(obj, "v").map(|words| [1, 2, 3].map(|k| words[k].parse().unwrap())).collect();
     let corners = lines(obj, "f").chain(lines(obj, "l")).flat_map(|words| {
         let numbers = words[1..].iter();
         let numbers = numbers.map(|word| word.split('/').next().unwrap().parse::<usize>().unwrap());
@@ -173,17 +164,11 @@ fn pc2_moves_the_mesh_that_programs_read() {
     let folder = &Folder::new();
     let mut fewer = 0;
     for entry in a3_scenes::SCENES {
-        let words = format!(
-            "simulate --scene {} --until 0.01 --output x.pc2",
-            entry.name
-        );
+        let words = format!("simulate --scene {} --until 0.01 --output x.pc2", entry.name);
         succeed(folder, words);
         let obj = folder.read("x.obj");
         let bytes = folder.bytes("x.pc2");
-        let numbers: Vec<_> = bytes[12..]
-            .chunks_exact(4)
-            .map(|b| b.try_into().unwrap())
-            .collect();
+        let numbers: Vec<_> = bytes[12..].chunks_exact(4).map(|b| b.try_into().unwrap()).collect();
         let (mesh, count) = (kept(&obj), u32::from_le_bytes(numbers[1]) as usize);
         assert!(!mesh.is_empty() && mesh.len() == count, "{}", entry.name);
         for (i, point) in mesh.iter().enumerate() {
@@ -212,10 +197,7 @@ fn times_are_short() {
         let run = "simulate r 0.001 --scene simple --until 0.006";
         succeed(folder, format!("{run} --output {name} {fps}"));
         let file = folder.read(name);
-        assert!(
-            file.contains(expected) && !file.contains("99999999"),
-            "{file}"
-        );
+        assert!(file.contains(expected) && !file.contains("99999999"), "{file}");
     }
 }
 
@@ -223,12 +205,9 @@ fn times_are_short() {
 #[test]
 fn normals_are_as_many_as_vertices() {
     let folder = &Folder::new();
-    for (scene, has_normals) in [
-        ("cloth", true),
-        ("chain", false),
-        ("boxes", true),
-        (ELLIPSE, true),
-    ] {
+    for (scene, has_normals) in
+        [("cloth", true), ("chain", false), ("boxes", true), (ELLIPSE, true)]
+    {
         write(folder, scene, "x.obj");
         let obj = folder.read("x.obj");
         let (vertices, normals) = (lines(&obj, "v").count(), lines(&obj, "vn").count());

@@ -23,10 +23,7 @@ const RATE: f64 = 25.0;
 const COUNT: usize = 6;
 
 /// Scene of a drop that is drawn out.
-const ELLIPSE: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../../docs/scenes/ellipse.toml"
-);
+const ELLIPSE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/ellipse.toml");
 
 /// Returns the arguments of the program.
 fn words(scene: &str, output: &str) -> String {
@@ -59,9 +56,7 @@ fn row(matrix: &[f64], i: usize) -> [f64; 3] {
 /// Positions at a frame in single precision.
 fn positions(simulation: &Simulation) -> Vec<[f32; 3]> {
     let n = simulation.particles();
-    (0..n)
-        .map(|i| row(&simulation.state()[..3 * n], i).map(|x| x as f32))
-        .collect()
+    (0..n).map(|i| row(&simulation.state()[..3 * n], i).map(|x| x as f32)).collect()
 }
 
 fn triangles(simulation: &Simulation) -> Vec<[u32; 3]> {
@@ -83,8 +78,5 @@ fn normals(simulation: &Simulation) -> Vec<[f64; 3]> {
 }
 
 fn distance(a: [f32; 3], b: [f64; 3]) -> f64 {
-    (0..3)
-        .map(|k| (f64::from(a[k]) - b[k]).powi(2))
-        .sum::<f64>()
-        .sqrt()
+    (0..3).map(|k| (f64::from(a[k]) - b[k]).powi(2)).sum::<f64>().sqrt()
 }

@@ -38,13 +38,8 @@ fn csv_has_a_row_a_frame_and_particle_to_the_bit() {
         run(scene, |k, simulation| {
             let (n, v) = (simulation.particles(), simulation.velocities());
             for i in 0..n {
-                let right = (
-                    k,
-                    k as f64 / RATE,
-                    i,
-                    row(&simulation.state()[..3 * n], i),
-                    row(&v, i),
-                );
+                let right =
+                    (k, k as f64 / RATE, i, row(&simulation.state()[..3 * n], i), row(&v, i));
                 assert_eq!(rows.next().unwrap().unwrap(), right);
             }
         });
@@ -71,10 +66,7 @@ fn arrays(bytes: &[u8]) -> BTreeMap<String, (String, Vec<f64>)> {
         at += 46 + name_length;
         // The header before the file agrees with the directory.
         assert_eq!(&bytes[start..start + 4], b"PK\x03\x04");
-        assert_eq!(
-            (number(start + 14, 4), number(start + 22, 4)),
-            (checksum, length)
-        );
+        assert_eq!((number(start + 14, 4), number(start + 22, 4)), (checksum, length));
         let content = start + 30 + name_length;
         assert_eq!(&bytes[start + 30..content], name);
         let file = &bytes[content..content + length];
@@ -82,10 +74,7 @@ fn arrays(bytes: &[u8]) -> BTreeMap<String, (String, Vec<f64>)> {
         assert_eq!(&file[..8], b"\x93NUMPY\x01\0");
         let first = 10 + number(content + 8, 2);
         let header = String::from_utf8(file[10..first].to_vec()).unwrap();
-        assert!(
-            first.is_multiple_of(64) && header.ends_with('\n'),
-            "{header}"
-        );
+        assert!(first.is_multiple_of(64) && header.ends_with('\n'), "{header}");
         let numbers = file[first..].chunks_exact(8);
         let numbers = numbers.map(|b| f64::from_le_bytes(b.try_into().unwrap()));
         let name = String::from_utf8(name.to_vec()).unwrap();

@@ -80,10 +80,7 @@ fn usd_moves_a_surface_with_smooth_normals() {
         }
         let corners = &mesh["int[] faceVertexIndices"][&-1];
         let right = triangles(simulation).concat();
-        assert_eq!(
-            *corners,
-            right.into_iter().map(f64::from).collect::<Vec<_>>()
-        );
+        assert_eq!(*corners, right.into_iter().map(f64::from).collect::<Vec<_>>());
         let counts = &mesh["int[] faceVertexCounts"][&-1];
         assert!(counts.iter().all(|count| *count == 3.0) && 3 * counts.len() == corners.len());
     });

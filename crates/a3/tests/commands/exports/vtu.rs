@@ -23,9 +23,8 @@ fn rows<const N: usize>(file: &str, after: &str) -> Vec<[f64; N]> {
     let array = file.split_once(after).unwrap().1;
     let numbers = array.split_once('>').unwrap().1;
     let numbers = numbers.split_once("</DataArray>").unwrap().0;
-    let numbers: Vec<f64> = (numbers.split_whitespace().map(str::parse))
-        .collect::<Result<_, _>>()
-        .unwrap();
+    let numbers: Vec<f64> =
+        (numbers.split_whitespace().map(str::parse)).collect::<Result<_, _>>().unwrap();
     let (rows, rest) = numbers.as_chunks();
     assert!(rest.is_empty());
     rows.to_vec()
@@ -40,19 +39,15 @@ fn a_hanging_bar_has_the_stress_of_its_weight() {
     let run = "simulate i 0.02 --scene bar.toml --until 8 --output bar.vtu";
     succeed(folder, run);
     let file = folder.read("bar.vtu");
-    let points: Vec<Vector3<f64>> = (rows(&file, "<Points>").into_iter())
-        .map(Vector3::from)
-        .collect();
+    let points: Vec<Vector3<f64>> =
+        (rows(&file, "<Points>").into_iter()).map(Vector3::from).collect();
     let corners = rows::<4>(&file, "\"connectivity\"");
     let stresses = rows::<9>(&file, "\"stress\"");
     let mises = rows::<1>(&file, "\"von_mises_stress\"");
     let kinds = rows::<1>(&file, "\"types\"");
     assert_eq!(points.len(), 7 * 3 * 3);
     assert_eq!(corners.len(), 6 * 6 * 2 * 2);
-    assert_eq!(
-        [stresses.len(), mises.len(), kinds.len()],
-        [corners.len(); 3]
-    );
+    assert_eq!([stresses.len(), mises.len(), kinds.len()], [corners.len(); 3]);
     assert!(kinds.iter().all(|kind| *kind == [10.0]));
     let (mut along, mut volume, mut middle) = (0.0, 0.0, (0.0, 0.0));
     for (k, corners) in corners.iter().enumerate() {
@@ -72,8 +67,5 @@ fn a_hanging_bar_has_the_stress_of_its_weight() {
     let moment = weight * 0.3;
     assert!((along / moment - 1.0).abs() < 0.05, "{along} {moment}");
     let pull = weight / 2.0 / 0.01;
-    assert!(
-        (middle.0 / middle.1 / pull - 1.0).abs() < 0.05,
-        "{middle:?} {pull}"
-    );
+    assert!((middle.0 / middle.1 / pull - 1.0).abs() < 0.05, "{middle:?} {pull}");
 }

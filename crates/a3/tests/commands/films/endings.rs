@@ -27,20 +27,12 @@ fn films_that_cannot_be_are_refused_before_the_work() {
         ("x.gif --fps 0.1 --size 70000x10", "65535"),
     ] {
         let line = complaint(&a3(folder, long(words)), 2);
-        assert!(
-            line.starts_with("error: ") && line.contains(says),
-            "{words:?}: {line}"
-        );
+        assert!(line.starts_with("error: ") && line.contains(says), "{words:?}: {line}");
     }
-    let nowhere = command(folder, long("x.mp4 --fps 0.1"))
-        .env("PATH", "/nowhere")
-        .output()
-        .unwrap();
+    let nowhere =
+        command(folder, long("x.mp4 --fps 0.1")).env("PATH", "/nowhere").output().unwrap();
     let line = complaint(&nowhere, 1);
-    assert!(
-        line.contains("apt install ffmpeg") && line.contains(".gif"),
-        "{line}"
-    );
+    assert!(line.contains("apt install ffmpeg") && line.contains(".gif"), "{line}");
     assert_eq!(folder.count(), 0);
 }
 
@@ -69,11 +61,7 @@ fn a_film_that_blows_up_keeps_what_was_before() {
 #[cfg(unix)]
 fn an_interrupted_film_keeps_what_was_before() {
     let folder = &Folder::new();
-    let names = if is_missing("ffmpeg") {
-        &["x.gif"][..]
-    } else {
-        &["x.gif", "x.mp4"]
-    };
+    let names = if is_missing("ffmpeg") { &["x.gif"][..] } else { &["x.gif", "x.mp4"] };
     for name in names {
         let words = format!("render v 0.01 --until 1000 --size 80x60 --output {name}");
         let mut child = command(folder, words);
@@ -85,11 +73,7 @@ fn an_interrupted_film_keeps_what_was_before() {
         let is_writing = || {
             let mut sizes = fs::read_dir(folder).unwrap().flatten().map(|entry| {
                 let beside = entry.file_name().to_string_lossy().starts_with(".a3-");
-                if beside {
-                    entry.metadata().map_or(0, |about| about.len())
-                } else {
-                    0
-                }
+                if beside { entry.metadata().map_or(0, |about| about.len()) } else { 0 }
             });
             sizes.any(|size| size > 0)
         };
@@ -106,24 +90,15 @@ fn an_interrupted_film_keeps_what_was_before() {
             return;
         }
         let line = complaint(&output, 130);
-        assert!(
-            line.starts_with(&format!("interrupted: {name} has the first")),
-            "{line}"
-        );
+        assert!(line.starts_with(&format!("interrupted: {name} has the first")), "{line}");
         if *name == "x.gif" {
             let film = frames(&folder.join("x.gif"));
-            assert!(
-                line.contains(&format!(" first {} of 25001", film.len())),
-                "{line}"
-            );
+            assert!(line.contains(&format!(" first {} of 25001", film.len())), "{line}");
         } else {
             let words = "-v error -count_frames -show_streams x.mp4";
             let says = asked(folder, "ffprobe", words);
             let count: usize = line.split(' ').nth(5).unwrap().parse().unwrap();
-            assert!(
-                says.contains(&format!("nb_read_frames={count}\n")),
-                "{line}\n{says}"
-            );
+            assert!(says.contains(&format!("nb_read_frames={count}\n")), "{line}\n{says}");
         }
     }
     assert_eq!(folder.count(), names.len());

@@ -44,10 +44,7 @@ fn a_gif_says_what_rate_it_can_have() {
         }
         assert!(output.status.success());
         let stderr = text(&output.stderr);
-        assert!(
-            stderr.contains(has) && stderr.lines().count() == 1,
-            "{stderr}"
-        );
+        assert!(stderr.contains(has) && stderr.lines().count() == 1, "{stderr}");
         let film = frames(&folder.join("film.gif"));
         assert_eq!(film[0].delay().numer_denom_ms(), (delay, 1));
         assert_eq!(film.len() as u32, 500 / delay + 1, "as long as asked for");
@@ -64,10 +61,7 @@ fn transparent_films_have_nothing_behind_the_cloth() {
     let count =
         |picture: &RgbaImage, opacity: u8| picture.pixels().filter(|p| p.0[3] == opacity).count();
     let (clear, solid, all) = (count(&bare, 0), count(&bare, 255), 160 * 120);
-    assert!(
-        clear > all / 2 && solid > all / 20 && clear + solid < all,
-        "{clear} {solid}"
-    );
+    assert!(clear > all / 2 && solid > all / 20 && clear + solid < all, "{clear} {solid}");
     assert!(made(folder, with("#.png --transparent --fps 2")));
     assert_eq!(picture(folder, "2.png"), bare);
 
@@ -79,9 +73,6 @@ fn transparent_films_have_nothing_behind_the_cloth() {
     let (last, bare) = (film.last().unwrap().buffer(), picture(folder, "y.png"));
     for (p, q) in last.pixels().zip(bare.pixels()) {
         assert_eq!(p.0[3], if q.0[3] < 128 { 0 } else { 255 });
-        assert!(
-            p.0[3] == 0 || (0..3).all(|c| p.0[c].abs_diff(q.0[c]) < 24),
-            "{p:?} {q:?}"
-        );
+        assert!(p.0[3] == 0 || (0..3).all(|c| p.0[c].abs_diff(q.0[c]) < 24), "{p:?} {q:?}");
     }
 }

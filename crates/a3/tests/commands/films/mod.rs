@@ -24,11 +24,7 @@ fn made(folder: &Path, words: impl Words) -> bool {
     if gpu_is_missing(&output) {
         return false;
     }
-    assert!(
-        output.status.success(),
-        "{words:?}: {}",
-        text(&output.stderr)
-    );
+    assert!(output.status.success(), "{words:?}: {}", text(&output.stderr));
     true
 }
 
@@ -44,14 +40,7 @@ fn picture(folder: &Path, name: &str) -> RgbaImage {
 /// Returns the largest and the mean difference of a channel.
 fn difference(a: &RgbaImage, b: &RgbaImage) -> (u8, f64) {
     assert_eq!(a.dimensions(), b.dimensions());
-    let off: Vec<u8> = a
-        .iter()
-        .zip(b.iter())
-        .map(|(a, b)| a.abs_diff(*b))
-        .collect();
+    let off: Vec<u8> = a.iter().zip(b.iter()).map(|(a, b)| a.abs_diff(*b)).collect();
     let sum: f64 = off.iter().map(|off| f64::from(*off)).sum();
-    (
-        off.iter().copied().max().unwrap_or(0),
-        sum / off.len() as f64,
-    )
+    (off.iter().copied().max().unwrap_or(0), sum / off.len() as f64)
 }

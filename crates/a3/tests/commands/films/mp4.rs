@@ -51,14 +51,8 @@ fn stand_in(folder: &Path, script: &str) {
 fn when_ffmpeg_fails_nothing_is_left_but_its_reason() {
     let (folder, programs) = (&Folder::new(), &Folder::new());
     for (script, why) in [
-        (
-            "echo no such codec >&2; echo no film >&2; exit 1",
-            "no such codec",
-        ),
-        (
-            "cat >/dev/null; echo no such codec >&2; echo no film >&2; exit 1",
-            "no such codec",
-        ),
+        ("echo no such codec >&2; echo no film >&2; exit 1", "no such codec"),
+        ("cat >/dev/null; echo no such codec >&2; echo no film >&2; exit 1", "no such codec"),
         ("cat >/dev/null; kill -9 $$", "signal: 9 (SIGKILL)"),
         (
             "cat >/dev/null; for file; do :; done; printf '\\0\\0\\0\\020ftyp' >\"${file#file:}\"",
@@ -67,10 +61,7 @@ fn when_ffmpeg_fails_nothing_is_left_but_its_reason() {
     ] {
         stand_in(programs, script);
         let path = format!("{}:/usr/bin:/bin", programs.display());
-        let output = command(folder, with("film.mp4"))
-            .env("PATH", path)
-            .output()
-            .unwrap();
+        let output = command(folder, with("film.mp4")).env("PATH", path).output().unwrap();
         if gpu_is_missing(&output) {
             return;
         }

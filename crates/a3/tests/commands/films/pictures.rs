@@ -19,11 +19,9 @@ fn numbered_pictures_are_those_of_their_times() {
         .collect();
     names.sort();
     assert_eq!(names, ["f-01.png", "f-02.png", "f-03.png", "f-04.png"]);
-    for (name, time) in [
-        ("film/f-01.png", "0.2"),
-        ("film/f-03.png", "0.4"),
-        ("film/f-04.png", "0.5"),
-    ] {
+    for (name, time) in
+        [("film/f-01.png", "0.2"), ("film/f-03.png", "0.4"), ("film/f-04.png", "0.5")]
+    {
         let words = format!("render v 0.01 --until {time} --size 160x120 --output x.png");
         assert!(made(folder, words));
         let off = difference(&picture(folder, name), &picture(folder, "x.png"));
@@ -44,18 +42,12 @@ fn trails_and_highlighted_springs_are_filmed_too() {
         picture.pixels().filter(teal).count()
     };
     let counts = ["1.png", "4.png", "7.png"].map(teal);
-    assert!(
-        counts[0] == 0 && counts[1] > 20 && counts[2] > counts[1],
-        "{counts:?}"
-    );
+    assert!(counts[0] == 0 && counts[1] > 20 && counts[2] > counts[1], "{counts:?}");
     let plain = with("plain-#.png --fps 2");
     assert!(made(folder, &plain));
     let marked = with("marked-#.png --fps 2 --springs-of 210");
     assert!(made(folder, &marked));
-    let (most, _) = difference(
-        &picture(folder, "plain-2.png"),
-        &picture(folder, "marked-2.png"),
-    );
+    let (most, _) = difference(&picture(folder, "plain-2.png"), &picture(folder, "marked-2.png"));
     assert!(most > 100);
 }
 
@@ -76,9 +68,7 @@ fn what_has_torn_is_not_drawn() {
             let [r, g, b, _] = picture.get_pixel(x, y).0;
             r > 100 && g < 90 && b < 90
         };
-        let red: Vec<_> = (0..320)
-            .filter(|x| (0..120).any(|y| is_red(*x, y)))
-            .collect();
+        let red: Vec<_> = (0..320).filter(|x| (0..120).any(|y| is_red(*x, y))).collect();
         // The pins are 2.8 m apart, which are 83 px; the torn-off cloth is 1 m wide at most.
         assert!((15..35).contains(&red.len()), "{name}: {red:?}");
     }

@@ -119,8 +119,7 @@ pub type Step = fn(&Course, f64, &[Triple], &[Triple]) -> [Vec<Triple>; 2];
 
 fn plus(y: &[Triple], h: f64, f: &[Triple]) -> Vec<Triple> {
     let both = y.iter().zip(f);
-    both.map(|(y, f)| [y[0] + h * f[0], y[1] + h * f[1], y[2] + h * f[2]])
-        .collect()
+    both.map(|(y, f)| [y[0] + h * f[0], y[1] + h * f[1], y[2] + h * f[2]]).collect()
 }
 
 pub fn euler(course: &Course, h: f64, x: &[Triple], v: &[Triple]) -> [Vec<Triple>; 2] {

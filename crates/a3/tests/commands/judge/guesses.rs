@@ -16,18 +16,12 @@ fn the_step_is_found_if_rows_lie_between_steps() {
     let found = judged(folder, "chain", "mine.csv").remove(0);
     let method = &found["method"];
     assert_eq!(method["solver"], "trapezoid", "{found:#}");
-    assert_eq!(
-        (&method["step"], &method["points"]),
-        (&0.01.into(), &3.into())
-    );
+    assert_eq!((&method["step"], &method["points"]), (&0.01.into(), &3.into()));
     // A step that nobody types is asked for, and no neighbour is named.
     simulate("0.0137");
     let words = "judge --scene chain mine.csv";
     let report = said(folder, words);
-    assert!(
-        report.contains("if its step is another, add --step"),
-        "{report}"
-    );
+    assert!(report.contains("if its step is another, add --step"), "{report}");
     assert!(!report.contains("nearest"), "{report}");
     let report = said(folder, format!("{words} --step 0.0137"));
     assert!(report.contains("(Heun) at 0.0137 s"), "{report}");
@@ -52,10 +46,7 @@ fn the_step_is_found_in_a_file_of_many_rows() {
 fn steps_far_shorter_than_the_distance_of_rows_are_found() {
     let folder = &Folder::new();
     for step in [2e-3, 1e-3] {
-        said(
-            folder,
-            format!("simulate r {step} --scene chain --fps 20 --until 2 -o mine.csv"),
-        );
+        said(folder, format!("simulate r {step} --scene chain --fps 20 --until 2 -o mine.csv"));
         let found = judged(folder, "chain", "mine.csv").remove(0);
         assert_eq!(found["method"]["solver"], "rk4", "{found:#}");
         assert_eq!(found["method"]["step"], step, "{found:#}");
@@ -83,12 +74,7 @@ fn single_precision_is_recognised() {
     folder.write("cloth.toml", cloth(false));
     for (scene, h) in [("chain", 0.01f32), ("cloth.toml", 0.004)] {
         let course = Course::of(&said(folder, format!("scenes --print {scene} --list")));
-        write(
-            &folder.join("mine.csv"),
-            f64::from(h),
-            &course.run_single(h, 60),
-            true,
-        );
+        write(&folder.join("mine.csv"), f64::from(h), &course.run_single(h, 60), true);
         let report = said(folder, format!("judge --scene {scene} mine.csv"));
         let line = format!("agrees with symplectic Euler at {h} s in single precision to ");
         assert!(report.contains(&line), "{report}");
@@ -96,12 +82,7 @@ fn single_precision_is_recognised() {
         assert_eq!(found["method"]["single_precision"], true, "{found:#}");
         // A few wrong digits in double precision are no single precision.
         let mut states = course.run(symplectic, f64::from(h), 60);
-        states
-            .iter_mut()
-            .flatten()
-            .flatten()
-            .flatten()
-            .for_each(|x| *x *= 1.0 + 1e-7);
+        states.iter_mut().flatten().flatten().flatten().for_each(|x| *x *= 1.0 + 1e-7);
         write(&folder.join("other.csv"), f64::from(h), &states, true);
         let found = judged(folder, scene, "other.csv").remove(0);
         assert!(found["method"].is_null(), "{found:#}");
@@ -121,13 +102,7 @@ fn constants_that_are_a_little_off_are_named() {
         let runs: [(&str, &Course, Step, &str, f64); 3] = [
             ("g.csv", &light, symplectic, "gravity", 9.8 / 9.81),
             ("k.csv", &stiff, trapezoid, "stiffness", 1.01),
-            (
-                "v.csv",
-                &Course::of(&list),
-                slowed,
-                "velocities at the end of each step",
-                0.99,
-            ),
+            ("v.csv", &Course::of(&list), slowed, "velocities at the end of each step", 0.99),
         ];
         for (name, course, step, constant, factor) in runs {
             write(&folder.join(name), h, &course.run(step, h, 60), true);
@@ -169,10 +144,7 @@ fn constants_that_are_far_off_are_named() {
     let (mut loose, mut still) = (Course::of(&list), Course::of(&list));
     loose.spring = |_, _, _| 0.0;
     still.v.fill([0.0; 3]);
-    for (course, mistake) in [
-        (loose, "springs without stiffness"),
-        (still, "a start at rest"),
-    ] {
+    for (course, mistake) in [(loose, "springs without stiffness"), (still, "a start at rest")] {
         let found = judged_as("cloth.toml", &course);
         assert_eq!(found["method"]["mistake"], mistake, "{found:#}");
     }

@@ -14,11 +14,7 @@ fn methods_and_mistakes_of_another_program_are_named() {
     let folder = &Folder::new();
     folder.write("large.toml", cloth(false));
     folder.write("small.toml", cloth(true));
-    for (scene, h) in [
-        ("chain", 0.01),
-        ("large.toml", 0.004),
-        ("small.toml", 0.004),
-    ] {
+    for (scene, h) in [("chain", 0.01), ("large.toml", 0.004), ("small.toml", 0.004)] {
         let list = said(folder, format!("scenes --print {scene} --list"));
         let course = || Course::of(&list);
         let mut half = course();
@@ -35,34 +31,10 @@ fn methods_and_mistakes_of_another_program_are_named() {
             ("e", &course(), euler, "explicit Euler", None),
             ("s", &course(), symplectic, "symplectic Euler", None),
             ("t", &course(), trapezoid, "explicit trapezoid (Heun)", None),
-            (
-                "p",
-                &course(),
-                positions_first,
-                "symplectic Euler, positions first",
-                None,
-            ),
-            (
-                "l",
-                &course(),
-                trapezoid_late,
-                "explicit trapezoid (Heun)",
-                None,
-            ),
-            (
-                "g",
-                &half,
-                symplectic,
-                "symplectic Euler",
-                Some("half the gravity"),
-            ),
-            (
-                "r",
-                &no_rest,
-                euler,
-                "explicit Euler",
-                Some("rest lengths of 0"),
-            ),
+            ("p", &course(), positions_first, "symplectic Euler, positions first", None),
+            ("l", &course(), trapezoid_late, "explicit trapezoid (Heun)", None),
+            ("g", &half, symplectic, "symplectic Euler", Some("half the gravity")),
+            ("r", &no_rest, euler, "explicit Euler", Some("rest lengths of 0")),
             (
                 "n",
                 &not_normalised,
@@ -70,13 +42,7 @@ fn methods_and_mistakes_of_another_program_are_named() {
                 "explicit trapezoid (Heun)",
                 Some("spring directions that are not normalised"),
             ),
-            (
-                "o",
-                &one_end,
-                euler,
-                "explicit Euler",
-                Some("spring forces on the first end only"),
-            ),
+            ("o", &one_end, euler, "explicit Euler", Some("spring forces on the first end only")),
             ("f", &free, euler, "explicit Euler", Some("pins that move")),
         ];
         let names: Vec<_> = runs.iter().map(|run| format!("{}.csv", run.0)).collect();
@@ -93,10 +59,7 @@ fn methods_and_mistakes_of_another_program_are_named() {
             let asks = mistake.is_some() || ["p", "l"].contains(&name);
             assert_eq!(method["question"].is_string(), asks, "{scene} {name}");
             assert_eq!(method["step"].as_f64(), Some(h), "{scene} {name}");
-            assert!(
-                method["distance"].as_f64().unwrap() < 1e-12,
-                "{scene} {name}"
-            );
+            assert!(method["distance"].as_f64().unwrap() < 1e-12, "{scene} {name}");
         }
     }
 }
@@ -107,12 +70,7 @@ fn errors_orders_and_limits_are_told() {
     let course = Course::of(&said(folder, "scenes --print chain --list"));
     for (name, h) in [("a.csv", 0.02), ("b.csv", 0.01)] {
         let count = (1.0 / h) as usize;
-        write(
-            &folder.join(name),
-            h,
-            &course.run(trapezoid, h, count),
-            true,
-        );
+        write(&folder.join(name), h, &course.run(trapezoid, h, count), true);
     }
     let both = "judge --scene chain a.csv b.csv";
     let report = said(folder, both);
@@ -131,19 +89,12 @@ fn errors_orders_and_limits_are_told() {
     let own = (square / x.len() as f64).sqrt();
     assert!((last - own).abs() < 1e-9, "{last} {own}");
     // The limit is between the errors of both.
-    let worst = |k: usize| {
-        judged(folder, "chain", "a.csv b.csv")[k]["error"]
-            .as_f64()
-            .unwrap()
-    };
+    let worst = |k: usize| judged(folder, "chain", "a.csv b.csv")[k]["error"].as_f64().unwrap();
     let limit = (worst(0) * worst(1)).sqrt();
     let missed = a3(folder, format!("{both} --within {limit}"));
     assert_eq!(missed.status.code(), Some(1));
     let why = text(&missed.stderr);
-    assert!(
-        why.starts_with("error: a.csv: it errs by") && why.lines().count() == 1,
-        "{why}"
-    );
+    assert!(why.starts_with("error: a.csv: it errs by") && why.lines().count() == 1, "{why}");
     assert!(text(&missed.stdout).contains("within    yes"));
     let words = format!("judge --scene chain b.csv --within {limit}");
     said(folder, words);
@@ -156,10 +107,7 @@ fn every_format_is_read_alike() {
         let found = judged(folder, "chain", &format!("{file} --step 0.01")).remove(0);
         let method = &found["method"];
         assert_eq!(method["solver"], "rk4", "{file}: {found:#}");
-        (
-            found["error"].as_f64().unwrap(),
-            found["energy_error"].as_f64().unwrap(),
-        )
+        (found["error"].as_f64().unwrap(), found["energy_error"].as_f64().unwrap())
     };
     let mut all = vec![];
     for file in ["a.csv", "a.json", "a.npz"] {
@@ -220,37 +168,16 @@ fn a_file_that_does_not_fit_is_refused_in_a_line_and_those_beside_it_are_judged(
     for (bad, why) in [
         (String::new(), "empty"),
         ("1,2,3".into(), "names no time"),
-        (
-            "t,x0,y0,z0\n0,0,0,0".into(),
-            "1 particle, and the scene has 2",
-        ),
-        (
-            good.replacen("\n0.05", "\n0.01", 1),
-            "times must increase: after 0.04 s comes 0.01 s",
-        ),
-        (
-            good.replacen("\n0,", "\nNaN,", 1),
-            "a time must be a number of seconds from 0",
-        ),
-        (
-            good.replacen("\n0,0,", "\n0,nan,", 1),
-            "first state has numbers that are not finite",
-        ),
-        (
-            good.replacen("\n0,0,", "\n0,O,", 1),
-            "line 2: `O` is no number",
-        ),
-        (
-            good.replacen("\n0.01,", "\n0.01,1,", 1),
-            "line 3: it has 8 columns",
-        ),
+        ("t,x0,y0,z0\n0,0,0,0".into(), "1 particle, and the scene has 2"),
+        (good.replacen("\n0.05", "\n0.01", 1), "times must increase: after 0.04 s comes 0.01 s"),
+        (good.replacen("\n0,", "\nNaN,", 1), "a time must be a number of seconds from 0"),
+        (good.replacen("\n0,0,", "\n0,nan,", 1), "first state has numbers that are not finite"),
+        (good.replacen("\n0,0,", "\n0,O,", 1), "line 2: `O` is no number"),
+        (good.replacen("\n0.01,", "\n0.01,1,", 1), "line 3: it has 8 columns"),
     ] {
         folder.write("bad.csv", bad);
         let line = complaint(&a3(folder, "judge --scene pendulum bad.csv"), 2);
-        assert!(
-            line.starts_with("error: bad.csv: ") && line.contains(why),
-            "{line}"
-        );
+        assert!(line.starts_with("error: bad.csv: ") && line.contains(why), "{line}");
         let both = a3(folder, "judge --scene pendulum bad.csv good.csv");
         assert_eq!(both.status.code(), Some(2));
         assert!(text(&both.stdout).contains("agrees with symplectic Euler at 0.01 s"));
@@ -259,18 +186,13 @@ fn a_file_that_does_not_fit_is_refused_in_a_line_and_those_beside_it_are_judged(
     // A run that blew up is judged until then, and is not within any error.
     let lines: Vec<_> = good.lines().map(str::to_owned).collect();
     let (kept, lost) = lines.split_at(15);
-    let lost = lost
-        .iter()
-        .map(|line| format!("{},nan,0,0,nan,0,0", line.split(',').next().unwrap()));
+    let lost =
+        lost.iter().map(|line| format!("{},nan,0,0,nan,0,0", line.split(',').next().unwrap()));
     let lines: Vec<_> = kept.iter().cloned().chain(lost).collect();
     folder.write("lost.csv", lines.join("\n"));
     let lost = a3(folder, "judge --scene pendulum lost.csv --within 1");
     assert_eq!(lost.status.code(), Some(1));
-    assert!(
-        text(&lost.stdout).contains("not finite from 0.14 s on"),
-        "{}",
-        text(&lost.stdout)
-    );
+    assert!(text(&lost.stdout).contains("not finite from 0.14 s on"), "{}", text(&lost.stdout));
     assert!(text(&lost.stdout).contains("agrees with symplectic Euler"));
 }
 
@@ -278,12 +200,7 @@ fn a_file_that_does_not_fit_is_refused_in_a_line_and_those_beside_it_are_judged(
 fn files_are_on_the_chart() {
     let folder = &Folder::new();
     let course = Course::of(&said(folder, "scenes --print pendulum --list"));
-    write(
-        &folder.join("first-try.csv"),
-        0.01,
-        &course.run(euler, 0.01, 100),
-        false,
-    );
+    write(&folder.join("first-try.csv"), 0.01, &course.run(euler, 0.01, 100), false);
     for more in ["", "--seconds 0.001"] {
         let words = "judge --scene pendulum first-try.csv --chart chart.svg";
         let report = said(folder, format!("{words} {more}"));
@@ -304,10 +221,6 @@ fn a_run_that_explodes_is_named_by_its_first_rows() {
     assert!(states[300][0][3][1].abs() > 1e20);
     write(&folder.join("lost.csv"), 0.1, &states, true);
     let found = judged(folder, "chain", "lost.csv").remove(0);
-    assert_eq!(
-        found["method"]["title"], "explicit Euler",
-        "{:#}",
-        found["method"]
-    );
+    assert_eq!(found["method"]["title"], "explicit Euler", "{:#}", found["method"]);
     assert_eq!(found["method"]["step"], 0.1);
 }

@@ -49,10 +49,8 @@ pub(crate) fn untangle(layer: &ContactLayer, freedom: &Freedom, t: f64, x: &mut 
         if count < fewest {
             (fewest, since) = (count, round);
         }
-        let hits: Vec<_> = crossings
-            .iter()
-            .map(|crossing| Hit::new(&skeleton, *crossing, &all.at))
-            .collect();
+        let hits: Vec<_> =
+            crossings.iter().map(|crossing| Hit::new(&skeleton, *crossing, &all.at)).collect();
         let pieces = Pieces::cut(&skeleton, &hits, &all.at);
         let votes = Votes::count(&skeleton, &pieces, &hits);
         let shortens = (round - since) / PATIENCE % 2 == 1;
@@ -65,13 +63,7 @@ pub(crate) fn untangle(layer: &ContactLayer, freedom: &Freedom, t: f64, x: &mut 
             };
             pushes.extend(by.map(|by| hit.push(by)));
         }
-        all.advance(&pushes, |i| {
-            if shortens {
-                None
-            } else {
-                votes.of_piece(pieces.of[i])
-            }
-        });
+        all.advance(&pushes, |i| if shortens { None } else { votes.of_piece(pieces.of[i]) });
         for (i, at) in all.at.iter().take(n).enumerate() {
             for axis in 0..3 {
                 x[axis * n + i] = at[axis];

@@ -115,12 +115,7 @@ impl<'a> Points<'a> {
 
     /// Adds up the pushes on each rigid body, so that its points move alike.
     fn share_in_solids(&self, sums: &mut [(Vector3<f64>, f64)]) {
-        let count = self
-            .solids
-            .iter()
-            .flatten()
-            .max()
-            .map_or(0, |most| most + 1);
+        let count = self.solids.iter().flatten().max().map_or(0, |most| most + 1);
         let mut of_bodies = vec![(Vector3::zeros(), 0.0); count];
         for (solid, (sum, count)) in self.solids.iter().zip(sums.iter()) {
             if let Some(k) = solid {
@@ -138,11 +133,7 @@ impl<'a> Points<'a> {
     /// Moves the ends of each link towards its length.
     fn correct_links(&mut self) {
         let free = |i: usize| {
-            if self.solids[i].is_some() {
-                0.0
-            } else {
-                self.weights[i]
-            }
+            if self.solids[i].is_some() { 0.0 } else { self.weights[i] }
         };
         for (link, length) in self.links.iter().zip(&self.lengths) {
             let [i, j] = link.map(|i| i as usize);
@@ -203,9 +194,7 @@ fn whole(vertex: Vertex) -> (u8, usize) {
 /// Returns the direction in which the first side of a pair is nearest to the outside of the second.
 fn direction(pair: &Candidate, at: &[Vector3<f64>]) -> Vector3<f64> {
     let offset = closest(pair.kind, &pair.of(at)).offset;
-    let own = offset
-        .try_normalize(0.0)
-        .filter(|_| pair.kind != PairKind::VertexFloor);
+    let own = offset.try_normalize(0.0).filter(|_| pair.kind != PairKind::VertexFloor);
     own.unwrap_or_else(Vector3::y)
 }
 
@@ -246,11 +235,7 @@ impl Hit {
         let normal = doubled / area;
         let heights = [p, q].map(|end| (end - a).dot(&normal));
         let across = heights[0] - heights[1];
-        let share = if across == 0.0 {
-            0.5
-        } else {
-            (heights[0] / across).clamp(0.0, 1.0)
-        };
+        let share = if across == 0.0 { 0.5 } else { (heights[0] / across).clamp(0.0, 1.0) };
         let place = p + (q - p) * share;
         let part = |u: Vector3<f64>, v: Vector3<f64>| {
             ((u - place).cross(&(v - place)).dot(&normal) / area).clamp(0.0, 1.0)
@@ -263,11 +248,7 @@ impl Hit {
             ends,
             corners,
             share,
-            weights: if sum > 0.0 {
-                parts.map(|part| part / sum)
-            } else {
-                [1.0 / 3.0; 3]
-            },
+            weights: if sum > 0.0 { parts.map(|part| part / sum) } else { [1.0 / 3.0; 3] },
             normal,
             heights,
             most: REACH
@@ -294,11 +275,7 @@ impl Hit {
     pub fn push(&self, by: Vector3<f64>) -> Push {
         let ([p, q], [a, b, c]) = (self.ends, self.corners);
         let [u, v, w] = self.weights;
-        Push {
-            points: [p, q, a, b, c],
-            shares: [1.0 - self.share, self.share, -u, -v, -w],
-            by,
-        }
+        Push { points: [p, q, a, b, c], shares: [1.0 - self.share, self.share, -u, -v, -w], by }
     }
 }
 
@@ -337,8 +314,5 @@ pub(super) fn step(skeleton: &Skeleton, hit: &Hit, at: &[Vector3<f64>]) -> Optio
         gradient += along - hit.normal * (2.0 * edge.dot(&along) / sine);
     }
     let scale = hit.most / gradient.norm_squared().hypot(SOFTNESS).sqrt();
-    gradient
-        .iter()
-        .all(|g| g.is_finite())
-        .then_some(gradient * scale)
+    gradient.iter().all(|g| g.is_finite()).then_some(gradient * scale)
 }

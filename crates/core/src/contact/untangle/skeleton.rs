@@ -41,9 +41,7 @@ impl Skeleton {
             neighbours[*b as usize].push((*a, k as u32));
             sets.join(*a, *b);
         }
-        let parts: Vec<_> = (0..surface.vertices() as u32)
-            .map(|i| sets.find(i))
-            .collect();
+        let parts: Vec<_> = (0..surface.vertices() as u32).map(|i| sets.find(i)).collect();
         let mut counts = vec![0; parts.len()];
         for part in &parts {
             counts[*part as usize] += 1;

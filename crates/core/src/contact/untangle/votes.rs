@@ -62,37 +62,16 @@ impl Votes {
             let [a, b] = skeleton.edges[hit.edge].map(|i| pieces.of[i as usize]);
             if a != b {
                 let [first, second] = [a, b].map(|piece| pieces.sizes[piece as usize]);
-                let (end, piece, size) = if first < second {
-                    (0, a, first)
-                } else {
-                    (1, b, second)
-                };
+                let (end, piece, size) =
+                    if first < second { (0, a, first) } else { (1, b, second) };
                 let by = hit.passage(end);
-                return Some((
-                    Vote {
-                        wrong: Wrong::Piece(piece),
-                        by,
-                    },
-                    size,
-                ));
+                return Some((Vote { wrong: Wrong::Piece(piece), by }, size));
             }
             let [upper, lower] = *rims.get(&rim(skeleton, hit, *curve))?;
-            let end = if upper < lower {
-                hit.upper_end()
-            } else {
-                1 - hit.upper_end()
-            };
+            let end = if upper < lower { hit.upper_end() } else { 1 - hit.upper_end() };
             let wrong = Wrong::Rim(skeleton.parts[skeleton.edges[hit.edge][0] as usize]);
             let is_open = upper.min(lower).is_finite();
-            is_open.then(|| {
-                (
-                    Vote {
-                        wrong,
-                        by: hit.passage(end),
-                    },
-                    upper.min(lower),
-                )
-            })
+            is_open.then(|| (Vote { wrong, by: hit.passage(end) }, upper.min(lower)))
         };
         let votes: Vec<_> = hits.iter().zip(&curves).map(vote).collect();
         for (vote, curve) in votes.iter().zip(&curves) {
@@ -118,10 +97,7 @@ impl Votes {
             curves,
             sums,
             decided,
-            of_pieces: of_pieces
-                .into_iter()
-                .map(|(k, all)| (k, all.by / all.count))
-                .collect(),
+            of_pieces: of_pieces.into_iter().map(|(k, all)| (k, all.by / all.count)).collect(),
         }
     }
 
@@ -151,9 +127,7 @@ fn decided(sums: &BTreeMap<(u32, Wrong), Sum>) -> BTreeMap<u32, Wrong> {
     let mut decided = BTreeMap::<u32, (Wrong, f64, f64)>::new();
     for ((curve, wrong), sum) in sums {
         let agreement = (CLASSES * sum.by.norm() / sum.lengths).round();
-        let best = decided
-            .entry(*curve)
-            .or_insert((*wrong, agreement, sum.size));
+        let best = decided.entry(*curve).or_insert((*wrong, agreement, sum.size));
         if agreement > best.1 || agreement == best.1 && sum.size < best.2 {
             *best = (*wrong, agreement, sum.size);
         }
@@ -204,9 +178,7 @@ fn rims(
         *count += 1.0;
     }
     let mean = |([upper, lower], count): ([f64; 2], f64)| [upper / count, lower / count];
-    sums.into_iter()
-        .map(|(key, sum)| (key, mean(sum)))
-        .collect()
+    sums.into_iter().map(|(key, sum)| (key, mean(sum))).collect()
 }
 
 /// The pieces into which crossings cut surfaces.
@@ -244,11 +216,7 @@ impl Pieces {
             sizes[of[b] as usize] += length * (1.0 - last);
         }
         let is_cut = |edge: u32| cuts.contains_key(&(edge as usize));
-        Self {
-            of,
-            sizes,
-            depths: depths(skeleton, is_cut, at),
-        }
+        Self { of, sizes, depths: depths(skeleton, is_cut, at) }
     }
 }
 

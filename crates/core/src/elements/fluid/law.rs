@@ -144,10 +144,7 @@ impl Kernel {
             }
         }
         let cell = spacing.powi(i32::from(dimensions));
-        Self {
-            reach: RELATIVE_REACH * spacing,
-            factor: 1.0 / (sum * cell),
-        }
+        Self { reach: RELATIVE_REACH * spacing, factor: 1.0 / (sum * cell) }
     }
 
     /// Returns W at a distance r (m) less than the reach.
@@ -209,13 +206,8 @@ mod tests {
 
     use super::*;
 
-    const WATER: FluidLaw = FluidLaw {
-        dimensions: 2,
-        spacing: 0.05,
-        density: 1000.0,
-        sound: 30.0,
-        viscosity: 0.0,
-    };
+    const WATER: FluidLaw =
+        FluidLaw { dimensions: 2, spacing: 0.05, density: 1000.0, sound: 30.0, viscosity: 0.0 };
 
     #[test]
     fn the_pressure_is_that_of_tait() {

@@ -128,13 +128,7 @@ impl Fluid {
     pub fn pressures(&self, x: &[f64]) -> Vec<f64> {
         self.scratch.lend(|buffers| {
             self.weigh(x, buffers);
-            let Buffers {
-                neighbours,
-                x,
-                densities,
-                pushes,
-                ..
-            } = buffers;
+            let Buffers { neighbours, x, densities, pushes, .. } = buffers;
             pushes.clear();
             pushes.extend(densities.iter().map(|density| self.law.push(*density)));
             let kernel = self.kernel;
@@ -158,9 +152,7 @@ impl Fluid {
         self.scratch.lend(|buffers| {
             self.place(x, &mut buffers.x);
             let x = &buffers.x;
-            buffers
-                .neighbours
-                .cover(x, self.kernel.reach, self.is_shared());
+            buffers.neighbours.cover(x, self.kernel.reach, self.is_shared());
             let ([i, j], distance) = buffers.neighbours.nearest(x, self.is_shared())?;
             Some(([i, j].map(|i| self.particles()[i]), distance))
         })
@@ -194,12 +186,7 @@ impl Fluid {
 
     /// Finds the neighbours and the densities at x (m), n x 3.
     fn weigh(&self, x: &[f64], buffers: &mut Buffers) {
-        let Buffers {
-            neighbours,
-            x: places,
-            densities,
-            ..
-        } = buffers;
+        let Buffers { neighbours, x: places, densities, .. } = buffers;
         self.place(x, places);
         let (kernel, mass, shared) = (self.kernel, self.law.mass(), self.is_shared());
         neighbours.cover(places, kernel.reach, shared);
@@ -229,15 +216,7 @@ impl Force for Fluid {
     fn add_forces(&self, at: &At, f: &mut [f64]) {
         self.scratch.lend(|buffers| {
             self.weigh(at.x, buffers);
-            let Buffers {
-                neighbours,
-                x,
-                v,
-                densities,
-                pushes,
-                out,
-                ..
-            } = buffers;
+            let Buffers { neighbours, x, v, densities, pushes, out, .. } = buffers;
             self.place(at.v, v);
             pushes.clear();
             pushes.extend(densities.iter().map(|density| self.law.push(*density)));
@@ -363,10 +342,7 @@ impl Force for Fluid {
     fn energy(&self, at: &At) -> Energy {
         let densities = self.densities(at.x);
         let sum: f64 = densities.iter().map(|d| self.law.energy(*d)).sum();
-        Energy {
-            elastic: self.law.mass() * sum,
-            ..Energy::default()
-        }
+        Energy { elastic: self.law.mass() * sum, ..Energy::default() }
     }
 
     fn reads_velocity(&self) -> bool {
@@ -375,10 +351,7 @@ impl Force for Fluid {
 
     fn cost(&self) -> Cost {
         let particles = self.particles().len() as f64;
-        Cost {
-            couplings: particles,
-            price: particles,
-        }
+        Cost { couplings: particles, price: particles }
     }
 
     fn assembly(&self) -> f64 {

@@ -58,8 +58,7 @@ impl Neighbours {
         self.at.clear();
         self.at.extend_from_slice(x);
         self.cells.fill(x, listed);
-        self.lists
-            .resize_with(x.len().div_ceil(CHUNK), List::default);
+        self.lists.resize_with(x.len().div_ceil(CHUNK), List::default);
         let (at, cells) = (&self.at, &self.cells);
         let make = |(k, list): (usize, &mut List)| list.fill(k * CHUNK, at, cells);
         if parallel {
@@ -103,10 +102,8 @@ impl Neighbours {
             let smaller = |a: (f64, u32), b: (f64, u32)| if b.0 < a.0 { b } else { a };
             near.iter().map(of).fold((f64::INFINITY, 0), smaller)
         });
-        let (i, (square, j)) = nearest
-            .into_iter()
-            .enumerate()
-            .min_by(|(_, (a, _)), (_, (b, _))| a.total_cmp(b))?;
+        let (i, (square, j)) =
+            nearest.into_iter().enumerate().min_by(|(_, (a, _)), (_, (b, _))| a.total_cmp(b))?;
         square.is_finite().then(|| ([i, j as usize], square.sqrt()))
     }
 
@@ -305,11 +302,7 @@ impl Members {
             let why = format!("particle {i} is named twice in a fluid");
             return Err(Error::Invalid(why));
         }
-        Ok(Self {
-            flowing: particles,
-            drained: vec![],
-            outflows: vec![],
-        })
+        Ok(Self { flowing: particles, drained: vec![], outflows: vec![] })
     }
 
     /// Sets the boxes in which particles leave.
@@ -388,9 +381,7 @@ mod tests {
 
     fn cloud(n: usize, size: [f64; 3]) -> Vec<Triple> {
         let mut random = SplitMix(9);
-        (0..n)
-            .map(|_| size.map(|size| size * random.between(-1.0, 1.0)))
-            .collect()
+        (0..n).map(|_| size.map(|size| size * random.between(-1.0, 1.0))).collect()
     }
 
     /// In a flat cloud, a long one that is wound around the torus, and a crowd.
@@ -398,22 +389,16 @@ mod tests {
     #[cfg_attr(miri, ignore = "takes hours there")]
     fn the_grid_finds_what_all_pairs_show() {
         let far = [1e300, f64::NAN, 0.0];
-        for (n, size) in [
-            (1500, [1.0, 1.0, 0.0]),
-            (700, [1e9, 0.2, 0.2]),
-            (2000, [0.5; 3]),
-            (1200, [0.01; 3]),
-        ] {
+        for (n, size) in
+            [(1500, [1.0, 1.0, 0.0]), (700, [1e9, 0.2, 0.2]), (2000, [0.5; 3]), (1200, [0.01; 3])]
+        {
             let mut x = cloud(n, size);
             x[7] = far;
             let expected = oracle(&x, 0.1);
             for parallel in [false, true] {
                 let mut neighbours = Neighbours::default();
                 neighbours.cover(&x, 0.1, parallel);
-                assert!(
-                    found(&neighbours, &x, 0.1, parallel) == expected,
-                    "{size:?}"
-                );
+                assert!(found(&neighbours, &x, 0.1, parallel) == expected, "{size:?}");
             }
         }
     }

@@ -40,8 +40,7 @@ impl Blocks {
             ends.unwrap_or([springs[0].0[0]; 2]).map(|i| i - start)
         };
         self.ends.push(std::array::from_fn(own));
-        self.laws
-            .push(springs.iter().map(|(_, spring)| *spring).enumerate());
+        self.laws.push(springs.iter().map(|(_, spring)| *spring).enumerate());
     }
 }
 
@@ -69,13 +68,7 @@ impl WithSimd for Sum<'_> {
 impl Kernels for Sum<'_> {
     #[inline(always)]
     fn forces<const DAMPED: bool>(self) {
-        let Sum {
-            blocks,
-            which,
-            fields,
-            f,
-            ..
-        } = self;
+        let Sum { blocks, which, fields, f, .. } = self;
         let [x, v, ..] = fields;
         let mut d = [Numbers::default(); BLOCK];
         let [mut s, mut rate] = [[0.0; BLOCK]; 2];
@@ -90,11 +83,7 @@ impl Kernels for Sum<'_> {
                 }
             }
             for m in 0..BLOCK {
-                let of = Products {
-                    dd: s[m],
-                    wd: rate[m],
-                    ..Products::default()
-                };
+                let of = Products { dd: s[m], wd: rate[m], ..Products::default() };
                 s[m] = laws::force::<DAMPED>(law, m, of);
             }
             for m in 0..BLOCK {
@@ -107,13 +96,7 @@ impl Kernels for Sum<'_> {
 
     #[inline(always)]
     fn changes<const DAMPED: bool, const PRODUCT: bool>(self, factors: Factors) {
-        let Sum {
-            blocks,
-            which,
-            fields,
-            f,
-            ..
-        } = self;
+        let Sum { blocks, which, fields, f, .. } = self;
         let [x, v, dx, dv] = fields;
         let [mut d, mut e] = [[Numbers::default(); BLOCK]; 2];
         let [mut dd, mut de, mut wd, mut we, mut gd] = [[0.0; BLOCK]; 5];
@@ -130,13 +113,7 @@ impl Kernels for Sum<'_> {
                 }
             }
             for m in 0..BLOCK {
-                let of = Products {
-                    dd: dd[m],
-                    de: de[m],
-                    wd: wd[m],
-                    we: we[m],
-                    gd: gd[m],
-                };
+                let of = Products { dd: dd[m], de: de[m], wd: wd[m], we: we[m], gd: gd[m] };
                 [dd[m], de[m]] = laws::change::<DAMPED, PRODUCT>(law, m, of, factors);
             }
             for m in 0..BLOCK {

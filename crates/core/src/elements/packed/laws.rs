@@ -44,11 +44,7 @@ impl Quantity {
         Self::Product(Factors {
             stiffness: -matrix.stiffness,
             damping: -matrix.damping,
-            least: if matrix.clamped {
-                0.0
-            } else {
-                f64::NEG_INFINITY
-            },
+            least: if matrix.clamped { 0.0 } else { f64::NEG_INFINITY },
         })
     }
 }
@@ -180,11 +176,7 @@ pub(super) fn force<const DAMPED: bool>(law: Law, m: usize, of: Products) -> f64
     // Finite for a spring of length 0, whose force is a multiple of d.
     let inverse = inverse_root(Scalar::new(), of.dd);
     let s = mul_add(-law.push[m], inverse, law.stiffness[m]);
-    if DAMPED {
-        mul_add(law.damping[m] * of.wd * inverse, inverse, s)
-    } else {
-        s
-    }
+    if DAMPED { mul_add(law.damping[m] * of.wd * inverse, inverse, s) } else { s }
 }
 
 /// Returns the factors a and b of -(a e + b d): the differential of the force on end i of spring m,
@@ -205,20 +197,10 @@ pub(super) fn change<const DAMPED: bool, const PRODUCT: bool>(
     if PRODUCT {
         let across = across.max(factors.least);
         let along = factors.stiffness * (k - across);
-        let along = if DAMPED {
-            mul_add(law.damping[m], factors.damping, along)
-        } else {
-            along
-        };
+        let along = if DAMPED { mul_add(law.damping[m], factors.damping, along) } else { along };
         [factors.stiffness * across, along * share]
     } else if DAMPED {
-        differential_of_damped(
-            law.damping[m],
-            [across, (k - across) * share],
-            inverse,
-            share,
-            of,
-        )
+        differential_of_damped(law.damping[m], [across, (k - across) * share], inverse, share, of)
     } else {
         [across, (k - across) * share]
     }

@@ -169,9 +169,7 @@ impl Packed {
             runs: &self.order.runs,
             which,
             stride: self.order.window(),
-            fields: fields
-                .each_ref()
-                .map(|a| a.get().get(offset..).unwrap_or(&[])),
+            fields: fields.each_ref().map(|a| a.get().get(offset..).unwrap_or(&[])),
             f: &mut f.get_mut()[offset..],
             is_damped: self.is_damped,
             quantity,

@@ -132,18 +132,14 @@ impl Order {
     /// Returns the number of bands, at most `most`, such that none is much smaller than the reach
     /// of its springs.
     pub fn bands(&self, most: usize) -> usize {
-        most.min(self.particles.len() / (2 * self.reach.max(1)))
-            .max(1)
+        most.min(self.particles.len() / (2 * self.reach.max(1))).max(1)
     }
 
     /// Returns band number k of `bands`.
     pub fn stretch(&self, k: usize, bands: usize) -> Stretch {
         let n = self.particles.len();
         let own = n * k / bands..n * (k + 1) / bands;
-        Stretch {
-            tiles: own.start.saturating_sub(self.reach) / TILE..own.end.div_ceil(TILE),
-            own,
-        }
+        Stretch { tiles: own.start.saturating_sub(self.reach) / TILE..own.end.div_ceil(TILE), own }
     }
 }
 
@@ -174,9 +170,7 @@ fn by_rank(mut all: Vec<Entry>) -> Vec<Entry> {
     all.sort_by_key(|(ends, _)| *ends);
     let same = |a: &Entry, b: &Entry| a.0[0] == b.0[0];
     let of_particles = all.chunk_by(same);
-    let mut ranked: Vec<_> = of_particles
-        .flat_map(|chunk| chunk.iter().enumerate())
-        .collect();
+    let mut ranked: Vec<_> = of_particles.flat_map(|chunk| chunk.iter().enumerate()).collect();
     ranked.sort_by_key(|(rank, ([i, _], _))| (*i as usize / TILE, *rank, *i));
     ranked.into_iter().map(|(_, entry)| *entry).collect()
 }
@@ -195,8 +189,7 @@ impl Runs {
     pub fn push(&mut self, springs: &[([u32; 2], &Spring)], start: u32) {
         let [i, j] = springs[0].0;
         let first = i - i % BLOCK as u32;
-        self.places
-            .push([first, first + (j - i)].map(|i| i - start));
+        self.places.push([first, first + (j - i)].map(|i| i - start));
         let at = |(ends, spring): &([u32; 2], _)| ((ends[0] - first) as usize, *spring);
         self.laws.push(springs.iter().map(at));
     }
@@ -270,20 +263,12 @@ impl Kernels for Sum<'_> {
             let [i, j] = runs.places[block];
             let places = [at(x, stride, i), at(x, stride, j)];
             // Without damping, velocities are not loaded.
-            let speeds = if DAMPED {
-                [at(v, stride, i), at(v, stride, j)]
-            } else {
-                places
-            };
+            let speeds = if DAMPED { [at(v, stride, i), at(v, stride, j)] } else { places };
             for m in 0..BLOCK {
                 let d = apart(places, m);
                 let of = Products {
                     dd: dot(d, d),
-                    wd: if DAMPED {
-                        dot(apart(speeds, m), d)
-                    } else {
-                        0.0
-                    },
+                    wd: if DAMPED { dot(apart(speeds, m), d) } else { 0.0 },
                     ..Products::default()
                 };
                 let s = laws::force::<DAMPED>(law, m, of);
@@ -317,11 +302,7 @@ impl Kernels for Sum<'_> {
             };
             for m in 0..BLOCK {
                 let (d, e) = (apart(places, m), apart(moves, m));
-                let mut of = Products {
-                    dd: dot(d, d),
-                    de: dot(d, e),
-                    ..Products::default()
-                };
+                let mut of = Products { dd: dot(d, d), de: dot(d, e), ..Products::default() };
                 if DAMPED && !PRODUCT {
                     let w = apart(speeds, m);
                     (of.wd, of.we) = (dot(w, d), dot(w, e));

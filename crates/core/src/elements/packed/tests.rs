@@ -41,18 +41,12 @@ fn rows(reach: usize, particles: usize, damping: f64) -> Vec<Spring> {
     let starts = (0..particles).filter(|i| i % 11 != 3);
     let next = starts.flat_map(|i| [(i, i + 1), (i + reach, i), (i, i + reach + 1)]);
     let ends = next.filter(|(i, j)| reach > 0 && (*i).max(*j) < particles);
-    let twice = springs(100, particles, 1, damping)
-        .into_iter()
-        .take(20 * reach);
+    let twice = springs(100, particles, 1, damping).into_iter().take(20 * reach);
     let spring = |(number, (i, j))| Spring {
         i,
         j,
         kind: SpringKind::Structural,
-        law: SpringLaw {
-            stiffness: 1.0 + (number % 7) as f64,
-            rest_length: 0.5,
-            damping,
-        },
+        law: SpringLaw { stiffness: 1.0 + (number % 7) as f64, rest_length: 0.5, damping },
     };
     ends.enumerate().map(spring).chain(twice).collect()
 }
@@ -88,14 +82,7 @@ fn in_bands(packed: &Packed, bands: usize, all: &[Vec<f64>; 4]) -> [Vec<f64>; 4]
 }
 
 fn matrix(x: &[f64], clamped: bool) -> Matrix<'_> {
-    Matrix {
-        x,
-        stiffness: 0.49,
-        damping: 0.7,
-        clamped,
-        masses: &[],
-        free: &[],
-    }
+    Matrix { x, stiffness: 0.49, damping: 0.7, clamped, masses: &[], free: &[] }
 }
 
 /// Adds the part of a spring in a product, from its coupling.

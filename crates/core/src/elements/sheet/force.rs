@@ -79,10 +79,7 @@ impl Force for Sheet {
 
     fn cost(&self) -> Cost {
         let couplings = self.len() as f64;
-        Cost {
-            couplings,
-            price: couplings / SPEED,
-        }
+        Cost { couplings, price: couplings / SPEED }
     }
 
     fn scale(&mut self, stiffness: f64, damping: f64) {

@@ -56,11 +56,7 @@ impl<'a, S: Simd> Others<'a, S> {
         Self {
             addends: addends.map(|addends| lanes.at::<S>(addends, 0, 0)),
             gravity: finish.gravity.map(|(g, masses)| {
-                let g = [
-                    simd.splat_f64s(g.x),
-                    simd.splat_f64s(g.y),
-                    simd.splat_f64s(g.z),
-                ];
+                let g = [simd.splat_f64s(g.x), simd.splat_f64s(g.y), simd.splat_f64s(g.z)];
                 (g, Numbers::new(masses, particles))
             }),
             drag: finish.drag.map(|c| simd.splat_f64s(c)),
@@ -97,11 +93,7 @@ impl<'a, S: Simd> Others<'a, S> {
         }
         if let Some(inverse_masses) = self.inverse_masses {
             let w = inverse_masses.at(simd, i);
-            f = [
-                simd.mul_f64s(f[0], w),
-                simd.mul_f64s(f[1], w),
-                simd.mul_f64s(f[2], w),
-            ];
+            f = [simd.mul_f64s(f[0], w), simd.mul_f64s(f[1], w), simd.mul_f64s(f[2], w)];
         }
         f
     }
@@ -275,11 +267,7 @@ fn spring<S: Simd, const KIND: u8>(
         return sum_of::<S>(simd, s, w, simd.mul_f64s(turn, more), d);
     }
     if KIND == DIFFERENTIAL {
-        let (w, e, g) = (
-            sub::<S>(simd, u, v),
-            sub::<S>(simd, dp, dx),
-            sub::<S>(simd, du, dv),
-        );
+        let (w, e, g) = (sub::<S>(simd, u, v), sub::<S>(simd, dp, dx), sub::<S>(simd, du, dv));
         let rate = twice(simd, dot(simd, w, d), inverse);
         let share = twice(simd, dot(simd, e, d), inverse);
         // c ((g . d) + (w . e) - 2 (w . d) (e . d) / L2) / L2
@@ -294,11 +282,7 @@ fn spring<S: Simd, const KIND: u8>(
         let rate = twice(simd, dot(simd, sub::<S>(simd, u, v), d), inverse);
         s = mul_adds(simd, law[2], rate, s);
     }
-    [
-        simd.mul_f64s(s, d[0]),
-        simd.mul_f64s(s, d[1]),
-        simd.mul_f64s(s, d[2]),
-    ]
+    [simd.mul_f64s(s, d[0]), simd.mul_f64s(s, d[1]), simd.mul_f64s(s, d[2])]
 }
 
 /// Returns a b2.

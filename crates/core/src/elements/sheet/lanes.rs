@@ -35,12 +35,7 @@ impl<S: Simd> Points<'_, S> {
     #[inline(always)]
     pub fn pick(&self, i: usize) -> Point<S> {
         let ((x, v), (dx, dv)) = (self.places, self.changes);
-        [
-            pick::<S>(x, i),
-            pick::<S>(v, i),
-            pick::<S>(dx, i),
-            pick::<S>(dv, i),
-        ]
+        [pick::<S>(x, i), pick::<S>(v, i), pick::<S>(dx, i), pick::<S>(dv, i)]
     }
 }
 
@@ -54,10 +49,7 @@ pub(super) struct Lanes {
 impl Lanes {
     #[inline(always)]
     pub fn new<S: Simd>(stride: usize, particles: usize) -> Self {
-        Self {
-            stride,
-            count: particles.div_ceil(S::F64_LANES),
-        }
+        Self { stride, count: particles.div_ceil(S::F64_LANES) }
     }
 
     /// Returns the vectors of a column, shifted to the right by a number of particles.
@@ -88,11 +80,8 @@ impl Lanes {
     #[inline(always)]
     pub fn points<S: Simd>(self, a: &[f64], changes: bool, shift: isize) -> Points<'_, S> {
         let places = self.places::<S>(a, shift);
-        let changes = if changes {
-            (self.at::<S>(a, 6, shift), self.at::<S>(a, 9, shift))
-        } else {
-            places
-        };
+        let changes =
+            if changes { (self.at::<S>(a, 6, shift), self.at::<S>(a, 9, shift)) } else { places };
         Points { places, changes }
     }
 
@@ -142,11 +131,7 @@ impl<'a, S: Simd> Numbers<'a, S> {
 /// Returns a + b k.
 #[inline(always)]
 pub(super) fn plus<S: Simd>(simd: S, a: Vectors<S>, b: S::f64s, k: Vectors<S>) -> Vectors<S> {
-    [
-        mul_adds(simd, b, k[0], a[0]),
-        mul_adds(simd, b, k[1], a[1]),
-        mul_adds(simd, b, k[2], a[2]),
-    ]
+    [mul_adds(simd, b, k[0], a[0]), mul_adds(simd, b, k[1], a[1]), mul_adds(simd, b, k[2], a[2])]
 }
 
 /// Returns vector i of three columns.
@@ -173,20 +158,12 @@ pub(super) fn replace<S: Simd>(a: &mut ColumnsMut<S>, i: usize, by: Vectors<S>) 
 
 #[inline(always)]
 pub(super) fn add<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>) -> Vectors<S> {
-    [
-        simd.add_f64s(a[0], b[0]),
-        simd.add_f64s(a[1], b[1]),
-        simd.add_f64s(a[2], b[2]),
-    ]
+    [simd.add_f64s(a[0], b[0]), simd.add_f64s(a[1], b[1]), simd.add_f64s(a[2], b[2])]
 }
 
 #[inline(always)]
 pub(super) fn sub<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>) -> Vectors<S> {
-    [
-        simd.sub_f64s(a[0], b[0]),
-        simd.sub_f64s(a[1], b[1]),
-        simd.sub_f64s(a[2], b[2]),
-    ]
+    [simd.sub_f64s(a[0], b[0]), simd.sub_f64s(a[1], b[1]), simd.sub_f64s(a[2], b[2])]
 }
 
 #[inline(always)]

@@ -29,10 +29,7 @@ pub(super) fn fill<S: Simd>(laws: &mut [f64], sheet: &Sheet, first: usize, width
     let (cols, lanes) = (sheet.grid().cols(), S::F64_LANES);
     let m = width.div_ceil(lanes);
     let vectors = [0, 1, m.saturating_sub(2), m - 1];
-    let directions = laws
-        .chunks_exact_mut(3 * KINDS * PAD)
-        .zip(sheet.laws())
-        .zip(OFFSETS);
+    let directions = laws.chunks_exact_mut(3 * KINDS * PAD).zip(sheet.laws()).zip(OFFSETS);
     for ((three, law), (_, _, right)) in directions {
         // The first ends of springs whose second ends are on the sheet.
         let from = right.min(0).unsigned_abs().saturating_sub(first);
@@ -94,11 +91,7 @@ impl<'a, S: Simd, const MASKED: bool> Law<'a, S, MASKED> {
                 }
             }
             _ => Self {
-                table: of(if rows_down <= below {
-                    direction
-                } else {
-                    OFFSETS.len()
-                }),
+                table: of(if rows_down <= below { direction } else { OFFSETS.len() }),
                 numbers: [simd.splat_f64s(0.0); 3],
                 mask: &[],
             },
@@ -109,14 +102,9 @@ impl<'a, S: Simd, const MASKED: bool> Law<'a, S, MASKED> {
     #[inline(always)]
     pub fn at(&self, simd: S, i: usize, kind: usize) -> Vectors<S> {
         if MASKED {
-            self.numbers
-                .map(|number| simd.mul_f64s(number, self.mask[i]))
+            self.numbers.map(|number| simd.mul_f64s(number, self.mask[i]))
         } else {
-            [
-                self.table[0][kind],
-                self.table[1][kind],
-                self.table[2][kind],
-            ]
+            [self.table[0][kind], self.table[1][kind], self.table[2][kind]]
         }
     }
 }

@@ -56,12 +56,7 @@ impl Missing {
         }
         // Room for vectors that start at the last column.
         masks.resize(masks.len() + stride, 0.0);
-        Self {
-            springs,
-            rows,
-            masks,
-            stride,
-        }
+        Self { springs, rows, masks, stride }
     }
 
     /// Returns the direction and the first end of each spring, in order.
@@ -77,10 +72,6 @@ impl Missing {
         numbers: [[f64; 3]; OFFSETS.len()],
     ) -> Option<Masks<'_>> {
         let start = self.rows[row]?;
-        Some(Masks {
-            numbers,
-            columns: &self.masks[start + PAD + first..],
-            stride: self.stride,
-        })
+        Some(Masks { numbers, columns: &self.masks[start + PAD + first..], stride: self.stride })
     }
 }

@@ -55,12 +55,7 @@ impl Sheet {
             let cells = ((rows * rows) as f64 + (cols * cols) as f64).sqrt();
             *law = SpringLaw::new(k, spacing * cells, k * damping_time)?;
         }
-        Ok(Self {
-            first: 0,
-            grid,
-            laws,
-            missing: None,
-        })
+        Ok(Self { first: 0, grid, laws, missing: None })
     }
 
     /// Returns the same sheet, of the particles from `first` on.
@@ -126,9 +121,7 @@ impl Sheet {
 
     /// Returns the direction and the first end of each missing spring, in order.
     fn lost(&self) -> &[(usize, usize)] {
-        self.missing
-            .as_ref()
-            .map_or(&[], |missing| missing.springs())
+        self.missing.as_ref().map_or(&[], |missing| missing.springs())
     }
 
     /// Returns the springs one by one, direction by direction, and within a direction in the order
@@ -164,17 +157,13 @@ impl Sheet {
             let gaps = &lost[at(begins.start)..at(begins.end.max(begins.start))];
             let from = std::iter::once(begins.start).chain(gaps.iter().map(|(_, i)| i + 1));
             let to = gaps.iter().map(|(_, i)| *i).chain([begins.end]);
-            from.zip(to)
-                .map(move |(from, to)| (direction, first + from..first + to, further))
+            from.zip(to).map(move |(from, to)| (direction, first + from..first + to, further))
         })
     }
 
     /// Removes the springs between pairs of particles, the lower number of each first.
     pub(super) fn remove(&mut self, pairs: &[[usize; 2]]) {
-        let mut lost: Vec<_> = pairs
-            .iter()
-            .filter_map(|pair| self.between(*pair))
-            .collect();
+        let mut lost: Vec<_> = pairs.iter().filter_map(|pair| self.between(*pair)).collect();
         lost.extend(self.lost());
         lost.sort_unstable();
         lost.dedup();
@@ -193,9 +182,7 @@ impl Sheet {
         let (i, j) = (i - self.first, j - self.first);
         let down = (j / cols).checked_sub(i / cols)?;
         let right = (j % cols) as isize - (i % cols) as isize;
-        let direction = OFFSETS
-            .iter()
-            .position(|offset| (offset.1, offset.2) == (down, right))?;
+        let direction = OFFSETS.iter().position(|offset| (offset.1, offset.2) == (down, right))?;
         Some((direction, i))
     }
 

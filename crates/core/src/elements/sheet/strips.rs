@@ -59,15 +59,7 @@ pub(crate) fn set(
     let own = columns_mut(f).map(|f| &mut f[sheet.particles()]);
     let bands = threads(grid.particles());
     fork(bands, 0..grid.rows(), grid.cols(), own, &|rows, f| {
-        Arch::new().dispatch(Forces {
-            quantity,
-            sheet,
-            fields,
-            rows,
-            f,
-            added,
-            finish,
-        });
+        Arch::new().dispatch(Forces { quantity, sheet, fields, rows, f, added, finish });
     });
 }
 
@@ -126,11 +118,7 @@ struct Kept<const C: usize, const P: usize> {
 fn strips_of<S: Simd, const KIND: u8, const C: usize, const P: usize>(simd: S, mut forces: Forces) {
     let cols = forces.sheet.grid().cols();
     let most = P - 2 * PAD;
-    let count = if cols <= most {
-        1
-    } else {
-        cols.div_ceil(most - LEFT - RIGHT)
-    };
+    let count = if cols <= most { 1 } else { cols.div_ceil(most - LEFT - RIGHT) };
     let mut kept = Kept {
         places: [[[0.0; P]; C]; 3],
         spring_forces: [[0.0; P]; SPRING_FORCES],
@@ -154,15 +142,7 @@ fn run<S: Simd, const KIND: u8, const C: usize, const P: usize>(
     strip: &Range<usize>,
     kept: &mut Kept<C, P>,
 ) {
-    let Forces {
-        sheet,
-        fields,
-        rows: wanted,
-        f,
-        added,
-        finish,
-        ..
-    } = forces;
+    let Forces { sheet, fields, rows: wanted, f, added, finish, .. } = forces;
     let (rows, cols) = (sheet.grid().rows(), sheet.grid().cols());
     // The columns whose springs are computed, and those of the particles at their ends.
     let first = strip.start.saturating_sub(LEFT);
@@ -171,11 +151,7 @@ fn run<S: Simd, const KIND: u8, const C: usize, const P: usize>(
     laws::fill::<S>(&mut kept.laws, sheet, first, width);
     let (n, own) = (fields[0].len() / 3, sheet.particles().start);
     // Forces of undamped springs depend on no velocities, unless there is drag.
-    let read = if KIND == PLAIN && finish.drag.is_none() {
-        1
-    } else {
-        C / 3
-    };
+    let read = if KIND == PLAIN && finish.drag.is_none() { 1 } else { C / 3 };
     let take = |row: usize, to: &mut [[f64; P]; C]| {
         if row < rows {
             let seen = row * cols + first..row * cols + cols.min(strip.end + RIGHT + 2);
@@ -269,9 +245,7 @@ mod tests {
                 let mut random = SplitMix(3);
                 let mut numbers = || {
                     let n = 3 * grid.particles();
-                    (0..n)
-                        .map(|_| random.between(-1.0, 1.0))
-                        .collect::<Vec<_>>()
+                    (0..n).map(|_| random.between(-1.0, 1.0)).collect::<Vec<_>>()
                 };
                 let all = [numbers(), numbers(), numbers(), numbers()];
                 let fields = all.each_ref().map(|field| &field[..]);
@@ -309,32 +283,16 @@ mod tests {
                 // The oracle: spring by spring.
                 let mut expected = vec![0.0; fields[0].len()];
                 let [x, v, dx, dv] = fields;
-                let at = At {
-                    t: 0.0,
-                    x,
-                    v,
-                    masses: &[],
-                    triangles: &Triangles::default(),
-                };
+                let at = At { t: 0.0, x, v, masses: &[], triangles: &Triangles::default() };
                 for spring in sheet.springs() {
                     axial::add_differential(&spring, &at, [dx, dv], &mut expected);
                 }
                 let mut found = vec![0.0; expected.len()];
                 let finish = Finish::default();
-                set(
-                    Quantity::Differential,
-                    &sheet,
-                    &fields,
-                    &mut found,
-                    false,
-                    &finish,
-                );
+                set(Quantity::Differential, &sheet, &fields, &mut found, false, &finish);
                 let size = expected.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
                 for (found, expected) in found.iter().zip(&expected) {
-                    assert!(
-                        (found - expected).abs() < 1e-13 * size,
-                        "{found} {expected}"
-                    );
+                    assert!((found - expected).abs() < 1e-13 * size, "{found} {expected}");
                 }
             }
         }

@@ -76,22 +76,8 @@ impl WithSimd for Advance<'_> {
 
 #[inline(always)]
 fn advance<S: Simd, const KIND: u8>(simd: S, job: Advance) {
-    let Advance {
-        sheet,
-        added,
-        finish,
-        flow,
-        number,
-        stage,
-        row,
-        registers,
-        scratch,
-    } = job;
-    let Registers {
-        y,
-        sum,
-        stage: moving,
-    } = registers;
+    let Advance { sheet, added, finish, flow, number, stage, row, registers, scratch } = job;
+    let Registers { y, sum, stage: moving } = registers;
     let (count, cols) = (sheet.grid().rows(), sheet.grid().cols());
     let lanes = Lanes::new::<S>(stride(cols), cols);
     let own = sheet.particles().start;
@@ -172,11 +158,8 @@ fn combine<S: Simd>(
         Next::Ahead { keep, add } => {
             let add = simd.splat_f64s(add);
             let more = k.map(|k| simd.mul_f64s(add, k));
-            let ahead = if by.first {
-                more
-            } else {
-                plus::<S>(simd, more, simd.splat_f64s(keep), at(y))
-            };
+            let ahead =
+                if by.first { more } else { plus::<S>(simd, more, simd.splat_f64s(keep), at(y)) };
             put::<S>(y, i, ahead);
             put::<S>(stage, i, after);
         }

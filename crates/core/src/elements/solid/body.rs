@@ -54,12 +54,7 @@ impl Solid {
             }
             block.volume[lane] = *volume;
         }
-        let mut solid = Self {
-            material,
-            count: tetrahedra.len(),
-            blocks,
-            pairs: Pairs::default(),
-        };
+        let mut solid = Self { material, count: tetrahedra.len(), blocks, pairs: Pairs::default() };
         solid.pairs = Pairs::new(solid.tetrahedra());
         Ok(solid)
     }
@@ -72,11 +67,7 @@ impl Solid {
 
     /// Returns the corners of the tetrahedra.
     pub fn tetrahedra(&self) -> impl Iterator<Item = [u32; 4]> {
-        (0..self.count).map(|k| {
-            self.blocks[k / LANES]
-                .corners
-                .map(|corner| corner[k % LANES])
-        })
+        (0..self.count).map(|k| self.blocks[k / LANES].corners.map(|corner| corner[k % LANES]))
     }
 
     /// Returns the volume at rest of each tetrahedron (m3).
@@ -116,20 +107,17 @@ impl Solid {
 
     /// Returns the neighbours of particle i in tetrahedra, with their distances at rest (m).
     pub(crate) fn neighbours(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
-        let each = self
-            .tetrahedra()
-            .enumerate()
-            .filter_map(move |(k, corners)| {
-                let own = corners.iter().position(|corner| *corner as usize == i)?;
-                let rows = self.gradients(k);
-                let edges = Matrix3::from_fn(|row, column| rows[row][column]).try_inverse()?;
-                let place = |corner: usize| match corner {
-                    0 => Vector3::zeros(),
-                    corner => edges.column(corner - 1).into_owned(),
-                };
-                let far = |corner: usize| (place(corner) - place(own)).norm();
-                Some([0, 1, 2, 3].map(|corner| (corners[corner] as usize, far(corner))))
-            });
+        let each = self.tetrahedra().enumerate().filter_map(move |(k, corners)| {
+            let own = corners.iter().position(|corner| *corner as usize == i)?;
+            let rows = self.gradients(k);
+            let edges = Matrix3::from_fn(|row, column| rows[row][column]).try_inverse()?;
+            let place = |corner: usize| match corner {
+                0 => Vector3::zeros(),
+                corner => edges.column(corner - 1).into_owned(),
+            };
+            let far = |corner: usize| (place(corner) - place(own)).norm();
+            Some([0, 1, 2, 3].map(|corner| (corners[corner] as usize, far(corner))))
+        });
         each.flatten().filter(move |(other, _)| *other != i)
     }
 
@@ -147,12 +135,7 @@ impl Solid {
             let gradients = self.gradients(k);
             let n = x.len() / 3;
             let places = corners.map(|i| from_fn(|axis| x[axis * n + i as usize]));
-            Deformed {
-                corners,
-                volume,
-                deformation: deformation(&gradients, &places),
-                gradients,
-            }
+            Deformed { corners, volume, deformation: deformation(&gradients, &places), gradients }
         })
     }
 }
@@ -170,12 +153,7 @@ mod tests {
         let rest = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let rest = rest.map(Vector3::from);
         for model in [Hyperelastic::NeoHookean, Hyperelastic::StVenantKirchhoff] {
-            let material = Material {
-                model,
-                young: 2e5,
-                poisson: 0.3,
-                damping: 0.5,
-            };
+            let material = Material { model, young: 2e5, poisson: 0.3, damping: 0.5 };
             let solid = Solid::new(0, &[[0, 1, 2, 3]], &rest, material).unwrap();
             let turn = nalgebra::Rotation3::from_euler_angles(0.3, -0.7, 1.1);
             let columns = |place: &dyn Fn(&Vector3<f64>) -> Vector3<f64>| -> Vec<f64> {

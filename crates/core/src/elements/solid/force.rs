@@ -43,34 +43,20 @@ impl Force for Solid {
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {
-        Arch::new().dispatch(Forces {
-            solid: self,
-            values: [at.x, at.v],
-            changes: None,
-            f,
-        });
+        Arch::new().dispatch(Forces { solid: self, values: [at.x, at.v], changes: None, f });
     }
 
     fn add_differential(&self, at: &At, d: [&[f64]; 2], df: &mut [f64]) {
-        Arch::new().dispatch(Forces {
-            solid: self,
-            values: [at.x, at.v],
-            changes: Some(d),
-            f: df,
-        });
+        Arch::new().dispatch(Forces { solid: self, values: [at.x, at.v], changes: Some(d), f: df });
     }
 
     fn couplings(&self, _t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
-        self.pairs
-            .visit_couplings(&self.material, self.deformed(x), clamped, visit);
+        self.pairs.visit_couplings(&self.material, self.deformed(x), clamped, visit);
     }
 
     fn energy(&self, at: &At) -> Energy {
         let of_one = |t: Deformed| t.volume * self.material.energy(&t.deformation);
-        Energy {
-            elastic: self.deformed(at.x).map(of_one).sum(),
-            ..Energy::default()
-        }
+        Energy { elastic: self.deformed(at.x).map(of_one).sum(), ..Energy::default() }
     }
 
     fn reads_velocity(&self) -> bool {
@@ -117,10 +103,9 @@ impl WithSimd for Forces<'_> {
             let x = gather(block, x);
             let v = if damped { gather(block, v) } else { none };
             let [dx, dv] = match self.changes {
-                Some([dx, dv]) => [
-                    gather(block, dx),
-                    if damped { gather(block, dv) } else { none },
-                ],
+                Some([dx, dv]) => {
+                    [gather(block, dx), if damped { gather(block, dv) } else { none }]
+                }
                 None => [none; 2],
             };
             let mut forces = none;
@@ -207,10 +192,7 @@ impl<N: Number> Rest<N> {
         let zero = volume.constant(0.0);
         Rest {
             gradients: three!(i => pair(&gradients[i], &[zero; 3])),
-            volume: Dual {
-                value: *volume,
-                change: zero,
-            },
+            volume: Dual { value: *volume, change: zero },
         }
     }
 

@@ -69,11 +69,7 @@ impl Material {
         }
         at_least(0.0, "the damping", self.damping)?;
         let moduli = self.lame();
-        if moduli
-            .iter()
-            .all(|k| (k * (1.0 + self.damping)).is_finite())
-            && moduli[1] > 0.0
-        {
+        if moduli.iter().all(|k| (k * (1.0 + self.damping)).is_finite()) && moduli[1] > 0.0 {
             return Ok(());
         }
         Err(Error::Invalid(format!(

@@ -59,10 +59,7 @@ pub(super) struct Dual<N> {
 impl<N: Number> Number for Dual<N> {
     #[inline(always)]
     fn constant(self, x: f64) -> Self {
-        Self {
-            value: self.value.constant(x),
-            change: self.value.constant(0.0),
-        }
+        Self { value: self.value.constant(x), change: self.value.constant(0.0) }
     }
 
     #[inline(always)]
@@ -80,10 +77,7 @@ impl<N: Number> Add for Dual<N> {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self {
-            value: self.value + other.value,
-            change: self.change + other.change,
-        }
+        Self { value: self.value + other.value, change: self.change + other.change }
     }
 }
 
@@ -92,10 +86,7 @@ impl<N: Number> Sub for Dual<N> {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self {
-            value: self.value - other.value,
-            change: self.change - other.change,
-        }
+        Self { value: self.value - other.value, change: self.change - other.change }
     }
 }
 
@@ -117,10 +108,7 @@ impl<N: Number> Div for Dual<N> {
     #[inline(always)]
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        Self {
-            value,
-            change: (self.change - value * other.change) / other.value,
-        }
+        Self { value, change: (self.change - value * other.change) / other.value }
     }
 }
 
@@ -151,18 +139,12 @@ pub(super) type Matrix<N> = [[N; 3]; 3];
 /// Returns a . b.
 #[inline(always)]
 pub(super) fn dot<N: Number>(a: [N; 3], b: [N; 3]) -> N {
-    (a[0] * b[0])
-        .plus_product(a[1], b[1])
-        .plus_product(a[2], b[2])
+    (a[0] * b[0]).plus_product(a[1], b[1]).plus_product(a[2], b[2])
 }
 
 #[inline(always)]
 fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Returns column k.
@@ -191,11 +173,7 @@ pub(super) fn symmetric<N: Number>(a: &Matrix<N>, b: &Matrix<N>) -> Matrix<N> {
     let xy = half * (dot(a[0], b[1]) + dot(a[1], b[0]));
     let xz = half * (dot(a[0], b[2]) + dot(a[2], b[0]));
     let yz = half * (dot(a[1], b[2]) + dot(a[2], b[1]));
-    [
-        [dot(a[0], b[0]), xy, xz],
-        [xy, dot(a[1], b[1]), yz],
-        [xz, yz, dot(a[2], b[2])],
-    ]
+    [[dot(a[0], b[0]), xy, xz], [xy, dot(a[1], b[1]), yz], [xz, yz, dot(a[2], b[2])]]
 }
 
 #[inline(always)]

@@ -199,17 +199,10 @@ fn eigensystem(material: &Material, s: [f64; 3]) -> (Matrix<f64>, [f64; 3], [f64
             let stretch = from_fn(|i| {
                 from_fn(|j| {
                     let both = log * s[i] * s[j] + l * area(i) * area(j);
-                    both + if i == j {
-                        along
-                    } else {
-                        pressure * s[3 - i - j]
-                    }
+                    both + if i == j { along } else { pressure * s[3 - i - j] }
                 })
             });
-            let (flip, twist) = (
-                s.map(|s| along - pressure * s),
-                s.map(|s| along + pressure * s),
-            );
+            let (flip, twist) = (s.map(|s| along - pressure * s), s.map(|s| along + pressure * s));
             (stretch, flip, twist)
         }
         Hyperelastic::StVenantKirchhoff => {
@@ -262,11 +255,7 @@ impl Principal {
         let second = unit(from_fn(|k| second[k] - share * first[k]));
         let second = second.unwrap_or_else(|| perpendicular(first));
         let u = [first, second, cross(first, second)];
-        Self {
-            stretches: from_fn(|k| dot(u[k], image(v[k]))),
-            u,
-            v,
-        }
+        Self { stretches: from_fn(|k| dot(u[k], image(v[k]))), u, v }
     }
 }
 
@@ -316,10 +305,6 @@ fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
 
 /// Returns a vector of length 1 perpendicular to one of length 1.
 fn perpendicular(a: [f64; 3]) -> [f64; 3] {
-    let axis = if a[0].abs() < 0.6 {
-        [1.0, 0.0, 0.0]
-    } else {
-        [0.0, 1.0, 0.0]
-    };
+    let axis = if a[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
     unit(cross(a, axis)).unwrap_or(axis)
 }

@@ -62,9 +62,7 @@ pub(super) fn shape(
     let longest = longest.into_iter().fold(0.0, f64::max);
     let [i, j, k, l] = corners;
     if six.is_nan() || six.abs() <= MIN_VOLUME * longest.powi(3) {
-        return Err(format!(
-            "is flat: its corners {i}, {j}, {k} and {l} lie in a plane"
-        ));
+        return Err(format!("is flat: its corners {i}, {j}, {k} and {l} lie in a plane"));
     }
     if six < 0.0 {
         return Err(format!(
@@ -72,9 +70,7 @@ pub(super) fn shape(
              them exchanged it is right"
         ));
     }
-    let inverse = edges
-        .try_inverse()
-        .filter(|m| m.iter().all(|g| g.is_finite()));
+    let inverse = edges.try_inverse().filter(|m| m.iter().all(|g| g.is_finite()));
     let inverse = inverse.ok_or_else(|| "is too small for numbers to describe".to_string())?;
     Ok((from_fn(|i| from_fn(|j| inverse[(i, j)])), six / 6.0))
 }

@@ -88,11 +88,7 @@ impl Bdf {
         Self {
             solver: KeptSolver::new(system),
             resumed: false,
-            orders: Orders {
-                last: 1,
-                next: 1,
-                equal: 0,
-            },
+            orders: Orders { last: 1, next: 1, equal: 0 },
             first: true,
             is_parabola: false,
             change: 1.0,
@@ -151,9 +147,7 @@ impl Bdf {
         };
         let y0 = &self.step.y0;
         let half = &mut self.sum;
-        half.iter_mut()
-            .zip(&*second)
-            .for_each(|(half, d)| *half = 0.5 * d);
+        half.iter_mut().zip(&*second).for_each(|(half, d)| *half = 0.5 * d);
         scaled_sum(&mut self.predicted, half, 1.0, first);
         if norm.of(y0, y0, half) > norm.of(y0, y0, &self.predicted) {
             first.copy_from_slice(&self.predicted);
@@ -195,19 +189,14 @@ impl Bdf {
             return;
         }
         if order > 1 && settled {
-            let lower = (
-                Self::ratio(self.error_of(order - 1, system, norm), order - 1),
-                order - 1,
-            );
+            let lower = (Self::ratio(self.error_of(order - 1, system, norm), order - 1), order - 1);
             if lower.0 > best.0 {
                 best = lower;
             }
         }
         if order < MAX_ORDER && settled {
-            let higher = (
-                Self::ratio(self.error_of(order + 1, system, norm), order + 1),
-                order + 1,
-            );
+            let higher =
+                (Self::ratio(self.error_of(order + 1, system, norm), order + 1), order + 1);
             if higher.0 > best.0 {
                 best = higher;
             }
@@ -267,11 +256,7 @@ impl Trial for Bdf {
         self.step.h = 1.0;
         self.first = true;
         self.is_parabola = false;
-        self.orders = Orders {
-            last: 1,
-            next: 1,
-            equal: 0,
-        };
+        self.orders = Orders { last: 1, next: 1, equal: 0 };
         work
     }
 
@@ -381,13 +366,7 @@ impl Trial for Bdf {
 
     fn last(&self) -> LastStep {
         let Orders { last, next, equal } = self.orders;
-        let Tangent {
-            t,
-            a,
-            formed,
-            clamped,
-            rate,
-        } = self.solver.tangent;
+        let Tangent { t, a, formed, clamped, rate } = self.solver.tangent;
         let mut step = self.step.clone();
         step.k[DIFFERENCES].copy_from_slice(&self.solver.at);
         step.counts = vec![last, next, equal, usize::from(clamped)];
@@ -403,10 +382,7 @@ impl Trial for Bdf {
         else {
             return Err(Error::Invalid("the last step is of another method".into()));
         };
-        if [last, next]
-            .iter()
-            .any(|order| !(1..=MAX_ORDER).contains(order))
-        {
+        if [last, next].iter().any(|order| !(1..=MAX_ORDER).contains(order)) {
             return Err(Error::Invalid(format!("there is no BDF of order {next}")));
         }
         if !self.solver.set_pattern(pattern) {
@@ -416,13 +392,7 @@ impl Trial for Bdf {
         self.first = false;
         self.orders = Orders { last, next, equal };
         self.solver.at.copy_from_slice(&step.k[DIFFERENCES]);
-        self.solver.tangent = Tangent {
-            t,
-            a,
-            formed,
-            clamped: clamped != 0,
-            rate,
-        };
+        self.solver.tangent = Tangent { t, a, formed, clamped: clamped != 0, rate };
         self.resumed = true;
         Ok(())
     }
@@ -473,9 +443,7 @@ fn roots(coefficients: &[Complex<f64>]) -> Vec<Complex<f64>> {
         terms.fold(Complex::from(1.0), |sum, c| sum * x + c / leading)
     };
     // Start values that are neither real nor roots of unity.
-    let mut roots: Vec<_> = (0..degree)
-        .map(|k| Complex::new(0.4, 0.9).powu(k as u32))
-        .collect();
+    let mut roots: Vec<_> = (0..degree).map(|k| Complex::new(0.4, 0.9).powu(k as u32)).collect();
     for _ in 0..MAX_ITERATIONS {
         let mut largest: f64 = 0.0;
         for k in 0..degree {
@@ -512,10 +480,7 @@ mod tests {
         assert_eq!(found.len(), given.len());
         for root in given {
             let nearest = found.iter().map(|other| (other - root).norm());
-            assert!(
-                nearest.fold(f64::INFINITY, f64::min) < 1e-10,
-                "{root} {found:?}"
-            );
+            assert!(nearest.fold(f64::INFINITY, f64::min) < 1e-10, "{root} {found:?}");
         }
     }
 

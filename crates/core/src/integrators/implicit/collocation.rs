@@ -32,34 +32,14 @@ const PAIR: (f64, f64) = (2.681_082_873_627_752_3, -3.050_430_199_247_410_5);
 /// Eigenvectors T of A^-1, and their inverse. The last two columns of T are the real and the
 /// imaginary part of a vector of the pair.
 const TO_STAGES: [[f64; STAGES]; STAGES] = [
-    [
-        0.094_438_762_488_975_24,
-        -0.141_255_295_020_954_2,
-        0.030_029_194_105_147_42,
-    ],
-    [
-        0.250_213_122_965_333_3,
-        0.204_129_352_293_799_94,
-        -0.382_942_112_757_261_9,
-    ],
+    [0.094_438_762_488_975_24, -0.141_255_295_020_954_2, 0.030_029_194_105_147_42],
+    [0.250_213_122_965_333_3, 0.204_129_352_293_799_94, -0.382_942_112_757_261_9],
     [1.0, 1.0, 0.0],
 ];
 const TO_PARTS: [[f64; STAGES]; STAGES] = [
-    [
-        4.178_718_591_551_904,
-        0.327_682_820_761_062_4,
-        0.523_376_445_499_449_5,
-    ],
-    [
-        -4.178_718_591_551_904,
-        -0.327_682_820_761_062_4,
-        0.476_623_554_500_550_44,
-    ],
-    [
-        0.502_872_634_945_786_8,
-        -2.571_926_949_855_605,
-        0.596_039_204_828_224_9,
-    ],
+    [4.178_718_591_551_904, 0.327_682_820_761_062_4, 0.523_376_445_499_449_5],
+    [-4.178_718_591_551_904, -0.327_682_820_761_062_4, 0.476_623_554_500_550_44],
+    [0.502_872_634_945_786_8, -2.571_926_949_855_605, 0.596_039_204_828_224_9],
 ];
 
 /// Largest number of iterations, if a shorter step may follow, and if none may.
@@ -156,9 +136,7 @@ impl Collocation {
         self.factored = if of_use { h } else { 0.0 };
         let work = Work {
             factorizations: 2,
-            ..self
-                .jacobian
-                .algebra(self.real.cost() + self.complex.cost())
+            ..self.jacobian.algebra(self.real.cost() + self.complex.cost())
         };
         (work, of_use)
     }
@@ -190,18 +168,11 @@ impl Collocation {
             work += self.correct(norm.system, (t, y), h);
             let sizes = self.f.iter().map(|change| norm.of(y, y, change));
             // NaN stays.
-            let size = sizes.fold(
-                0.0,
-                |most: f64, size| if size <= most { most } else { size },
-            );
+            let size = sizes.fold(0.0, |most: f64, size| if size <= most { most } else { size });
             if let Some(last) = last {
                 let found = if last > 0.0 { size / last } else { 0.0 };
                 // The rate is smoothed over two iterations, as it oscillates.
-                self.rate = if self.iterations > 2 {
-                    (found * self.rate).sqrt()
-                } else {
-                    found
-                };
+                self.rate = if self.iterations > 2 { (found * self.rate).sqrt() } else { found };
                 self.remaining = self.rate / (1.0 - self.rate);
                 let predicted = self.remaining * size * self.rate.powi(left);
                 if !(self.rate < 0.99 && predicted < enough) {
@@ -226,17 +197,7 @@ impl Collocation {
 
     /// Makes one iteration: replaces f by the change of the parts. Returns the cost.
     fn correct(&mut self, system: &dyn ParticleSystem, (t, y): (f64, &[f64]), h: f64) -> Work {
-        let Self {
-            jacobian,
-            stages,
-            parts,
-            f,
-            moved,
-            at,
-            single,
-            pair,
-            ..
-        } = self;
+        let Self { jacobian, stages, parts, f, moved, at, single, pair, .. } = self;
         for ((z, f), node) in stages.iter().zip(&mut *f).zip(NODES) {
             at.copy_from_slice(y);
             add_scaled(at, 1.0, z);
@@ -261,11 +222,7 @@ impl Collocation {
             (f[0][i], f[1][i], f[2][i]) = (*single, pair.re, pair.im);
         }
         let solutions = self.real.cost_of_solution() + self.complex.cost_of_solution();
-        Work {
-            evaluations: STAGES as u64,
-            solves: 2,
-            ..self.jacobian.algebra(solutions)
-        }
+        Work { evaluations: STAGES as u64, solves: 2, ..self.jacobian.algebra(solutions) }
     }
 
     /// Replaces a vector by its product with the inverse of REAL / h M - J. Returns the cost.

@@ -22,11 +22,8 @@ use crate::work::Work;
 const SHARE: f64 = 1e-6;
 /// Steps over a, and the weights of their changes d in the jump, in a y' and in a^2 y''.
 const STEPS: [f64; 3] = [1.0, 0.5, 0.25];
-const WEIGHTS: [[f64; 3]; 3] = [
-    [1.0 / 3.0, -2.0, 8.0 / 3.0],
-    [-2.0, 10.0, -8.0],
-    [8.0 / 3.0, -8.0, 16.0 / 3.0],
-];
+const WEIGHTS: [[f64; 3]; 3] =
+    [[1.0 / 3.0, -2.0, 8.0 / 3.0], [-2.0, 10.0, -8.0], [8.0 / 3.0, -8.0, 16.0 / 3.0]];
 /// Largest number of jumps.
 const MAX_JUMPS: usize = 20;
 /// Jump, over the sizes of the numbers, after which only rounding is left of the next one.
@@ -160,12 +157,7 @@ struct TinyStep {
 
 impl TinyStep {
     fn new(a: f64, dim: usize) -> Self {
-        Self {
-            a,
-            f: vec![0.0; dim],
-            d: vec![0.0; dim],
-            other: f64::NAN,
-        }
+        Self { a, f: vec![0.0; dim], d: vec![0.0; dim], other: f64::NAN }
     }
 
     /// Takes the step from y, whose numbers have these sizes. Returns the cost.
@@ -186,18 +178,12 @@ impl TinyStep {
         factors.solve(&mut self.d);
         let (mut random, mut other) = (SplitMix(3), vec![0.0; y.len()]);
         let changes: Vec<_> = sizes.iter().map(|s| s * random.between(0.5, 1.0)).collect();
-        jacobian
-            .matrix
-            .visit(|i, j, value| other[i] += a * value * changes[j]);
+        jacobian.matrix.visit(|i, j, value| other[i] += a * value * changes[j]);
         factors.solve(&mut other);
         let shares = other.iter().zip(sizes).map(|(x, size)| (x / size).powi(2));
         self.other = shares.sum::<f64>().sqrt();
         let costs = factors.cost() + 2.0 * factors.cost_of_solution();
-        work += Work {
-            solves: 2,
-            factorizations: 1,
-            ..jacobian.algebra(costs)
-        };
+        work += Work { solves: 2, factorizations: 1, ..jacobian.algebra(costs) };
         work
     }
 }

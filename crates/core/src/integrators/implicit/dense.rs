@@ -157,10 +157,7 @@ impl Dense {
         system.eval_f(t, y, &mut self.f);
         let work = self.solve_linear(a, base, y);
         add_scaled(y, 1.0, &self.change);
-        Work {
-            evaluations: 1,
-            ..work
-        }
+        Work { evaluations: 1, ..work }
     }
 
     /// Solves (M - a J) change = M (base - y) + a f(t, y), where f is known, by the factors.
@@ -180,10 +177,7 @@ impl Dense {
             self.change[i] = *change;
         }
         let algebra = self.jacobian.algebra(self.factors.cost_of_solution());
-        Work {
-            solves: 1,
-            ..algebra
-        }
+        Work { solves: 1, ..algebra }
     }
 
     /// Returns the change of y by the last correction.
@@ -209,10 +203,7 @@ impl Dense {
     /// Factorises M - a J. Returns the cost, and whether that succeeded.
     pub fn factorise(&mut self, a: f64) -> (Work, bool) {
         let of_use = self.jacobian.factorise(&mut self.factors, 1.0, a);
-        let work = Work {
-            factorizations: 1,
-            ..self.jacobian.algebra(self.factors.cost())
-        };
+        let work = Work { factorizations: 1, ..self.jacobian.algebra(self.factors.cost()) };
         (work, of_use)
     }
 }

@@ -23,10 +23,7 @@ pub(crate) const METHOD: Method = Method {
     damped_evaluations: 1,
     view: View::Tangent,
     create: Create::Step(|system| {
-        Box::new(ImplicitEuler {
-            stage: StageSolver::new(system),
-            base: vec![0.0; system.dim()],
-        })
+        Box::new(ImplicitEuler { stage: StageSolver::new(system), base: vec![0.0; system.dim()] })
     }),
 };
 
@@ -50,11 +47,7 @@ impl Divisible for ImplicitEuler {
     ) -> Result<(), Error> {
         let Self { stage, base } = self;
         base.copy_from_slice(y);
-        let newton = if is_plain(stage, system) {
-            Newton::Full
-        } else {
-            Newton::Once
-        };
+        let newton = if is_plain(stage, system) { Newton::Full } else { Newton::Once };
         *work += stage.solve(system, t + h, h, base, y, newton)?;
         stage.project_bodies(system, y);
         Ok(())

@@ -101,11 +101,7 @@ impl Jacobian {
         let mass = system.mass_matrix().to_vec();
         Self {
             units: Vec::with_capacity(count),
-            evaluation: if is_rigid {
-                f64::INFINITY
-            } else {
-                system.evaluation_cost()
-            },
+            evaluation: if is_rigid { f64::INFINITY } else { system.evaluation_cost() },
             unknowns,
             is_given: given.is_some(),
             searches: given.is_none() && count >= MANY && !is_central,
@@ -137,10 +133,7 @@ impl Jacobian {
         }
         Err(Error::Unsupported {
             method: "the implicit method",
-            why: Refusal::TooDense {
-                numbers,
-                most: MAX_DENSE,
-            },
+            why: Refusal::TooDense { numbers, most: MAX_DENSE },
         })
     }
 
@@ -207,10 +200,7 @@ impl Jacobian {
 
     /// Returns the work of linear algebra with this number of multiplications.
     pub fn algebra(&self, multiplications: f64) -> Work {
-        Work {
-            algebra: multiplications / self.evaluation,
-            ..Work::default()
-        }
+        Work { algebra: multiplications / self.evaluation, ..Work::default() }
     }
 
     /// Writes the product of M with numbers.
@@ -259,24 +249,13 @@ impl Jacobian {
             let scale = system.scales().get(k).copied();
             let own = y[k].abs().max(scale.unwrap_or(change));
             let sizes = [(own, NO_SIZE * most), (LEAST_SIZE * most, 0.0)];
-            let size = sizes
-                .into_iter()
-                .find(|(size, none)| size > none && *size > LEAST);
+            let size = sizes.into_iter().find(|(size, none)| size > none && *size > LEAST);
             // Towards where the number goes: beyond, f may not be defined.
             size.map_or(1.0, |(size, _)| size).copysign(f)
         };
         let speed = length / a.abs();
-        let Self {
-            units,
-            f,
-            is_central,
-            ..
-        } = self;
-        let share = if *is_central {
-            CENTRAL_SHARE
-        } else {
-            DIFFERENCE_SHARE
-        };
+        let Self { units, f, is_central, .. } = self;
+        let share = if *is_central { CENTRAL_SHARE } else { DIFFERENCE_SHARE };
         units.clear();
         system.measures(&mut |numbers, measure| {
             let unit = match measure {
@@ -300,14 +279,7 @@ impl Jacobian {
                 };
                 let step = share * size;
                 // Exactly the difference of two numbers.
-                [
-                    1.0,
-                    if *is_central {
-                        step
-                    } else {
-                        (y[k] + step) - y[k]
-                    },
-                ]
+                [1.0, if *is_central { step } else { (y[k] + step) - y[k] }]
             }));
         });
     }
@@ -399,24 +371,13 @@ impl Jacobian {
     /// Searches the pattern of the matrix near y. Returns the cost, and whether it has become
     /// larger.
     fn search(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> (Work, bool) {
-        let Self {
-            unknowns,
-            units,
-            matrix,
-            mass,
-            searches,
-            at,
-            f,
-            changed,
-            ..
-        } = self;
+        let Self { unknowns, units, matrix, mass, searches, at, f, changed, .. } = self;
         let mut random = SplitMix(1);
         let all = unknowns.iter().zip(&*units);
         let mut shifts = || -> Vec<f64> {
             let share = SEARCH_SHARE / DIFFERENCE_SHARE;
             let all = all.clone();
-            all.map(|(_, [_, step])| share * step * random.between(0.5, 1.0))
-                .collect()
+            all.map(|(_, [_, step])| share * step * random.between(0.5, 1.0)).collect()
         };
         let (away, moves) = (shifts(), shifts());
         at.copy_from_slice(y);
@@ -447,9 +408,7 @@ impl Jacobian {
             failed |= changed.iter().all(|f| f.is_nan());
             let differs = |i: usize| !failed && changed[i].to_bits() != base[i].to_bits();
             let rows = unknowns.iter().zip(0..);
-            rows.filter(|(i, _)| differs(**i))
-                .map(|(_, row)| row)
-                .collect()
+            rows.filter(|(i, _)| differs(**i)).map(|(_, row)| row).collect()
         });
         at.copy_from_slice(y);
         if failed {
@@ -476,16 +435,7 @@ impl Jacobian {
 
     /// Computes the matrix by difference quotients at y, where f is known. Returns the cost.
     fn difference(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Work {
-        let Self {
-            unknowns,
-            units,
-            matrix,
-            is_central,
-            at,
-            f,
-            changed,
-            ..
-        } = self;
+        let Self { unknowns, units, matrix, is_central, at, f, changed, .. } = self;
         let count = unknowns.len();
         match matrix {
             Matrix::Full(matrix) if matrix.len() < count * count => Work::default(),
@@ -546,15 +496,11 @@ impl Jacobian {
         }
         system.eval_f(t, &self.at, &mut self.changed);
         self.at.copy_from_slice(y);
-        let is_met = self
-            .unknowns
-            .iter()
-            .zip(&*follow)
-            .all(|(i, [change, size])| {
-                let (before, after) = (self.f[*i], self.changed[*i]);
-                let rounding = ROUNDING * (before.abs() + after.abs());
-                (after - before - change).abs() <= MISSING_SHARE * size + rounding
-            });
+        let is_met = self.unknowns.iter().zip(&*follow).all(|(i, [change, size])| {
+            let (before, after) = (self.f[*i], self.changed[*i]);
+            let rounding = ROUNDING * (before.abs() + after.abs());
+            (after - before - change).abs() <= MISSING_SHARE * size + rounding
+        });
         (Work::of(1), is_met)
     }
 }

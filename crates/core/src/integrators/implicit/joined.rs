@@ -103,11 +103,8 @@ impl Joined {
             let gap = joint.relative(gap);
             for (k, rate) in rates.iter_mut().enumerate() {
                 let holds = k < joint.count;
-                *rate = if holds {
-                    -(joint.values[k] + joint.gradients[k].dot(&gap)) / a
-                } else {
-                    0.0
-                };
+                *rate =
+                    if holds { -(joint.values[k] + joint.gradients[k].dot(&gap)) / a } else { 0.0 };
             }
         }
     }
@@ -155,10 +152,6 @@ impl Joined {
         for (impulse, change) in self.impulses.iter_mut().zip(&self.changes) {
             *impulse += change;
         }
-        Work {
-            solves: 1,
-            algebra: saddle.prices[1] * system.hints().speed,
-            ..Work::default()
-        }
+        Work { solves: 1, algebra: saddle.prices[1] * system.hints().speed, ..Work::default() }
     }
 }

@@ -37,13 +37,7 @@ pub(super) struct Tangent {
 
 impl Tangent {
     /// No tangent.
-    pub const NONE: Self = Self {
-        t: 0.0,
-        a: 0.0,
-        formed: 0.0,
-        clamped: false,
-        rate: 1.0,
-    };
+    pub const NONE: Self = Self { t: 0.0, a: 0.0, formed: 0.0, clamped: false, rate: 1.0 };
 }
 
 /// Reason why a solve with the kept tangent failed.
@@ -136,13 +130,7 @@ impl KeptSolver {
             let mut solved = Ok(());
             if fresh {
                 self.at.copy_from_slice(y);
-                self.tangent = Tangent {
-                    t,
-                    a,
-                    formed: a,
-                    clamped,
-                    rate: 1.0,
-                };
+                self.tangent = Tangent { t, a, formed: a, clamped, rate: 1.0 };
                 let (cost, of_use) = self.form(system);
                 work += cost;
                 if !of_use {
@@ -178,13 +166,7 @@ impl KeptSolver {
     /// Forms the tangent where it was formed before. Returns the cost, and whether it is positive
     /// definite.
     pub fn form(&mut self, system: &dyn ParticleSystem) -> (Work, bool) {
-        let Tangent {
-            t,
-            a,
-            formed,
-            clamped,
-            ..
-        } = self.tangent;
+        let Tangent { t, a, formed, clamped, .. } = self.tangent;
         match (&mut self.stage, linearized(system)) {
             (StageSolver::Mechanical(stage), Some(linearized)) => {
                 let (x, v) = self.at.split_at(self.at.len() / 2);

@@ -154,9 +154,8 @@ fn eliminate<T: ComplexField<RealField = f64> + Copy>(
     let (n, mut products) = (pivots.len(), 0);
     for k in 0..n {
         let size = |i: usize, matrix: &[T]| matrix[i * n + k].norm1();
-        let pivot = (k..n)
-            .max_by(|&i, &j| size(i, matrix).total_cmp(&size(j, matrix)))
-            .unwrap_or(k);
+        let pivot =
+            (k..n).max_by(|&i, &j| size(i, matrix).total_cmp(&size(j, matrix))).unwrap_or(k);
         if !(size(pivot, matrix) > 0.0 && size(pivot, matrix).is_finite()) {
             return None;
         }

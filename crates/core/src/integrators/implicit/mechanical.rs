@@ -68,11 +68,7 @@ impl Mechanical {
             dv: zeros(),
             dx: zeros(),
             before: zeros(),
-            secants: Secants::new(if mechanics.hints().reach.is_finite() {
-                3 * n
-            } else {
-                0
-            }),
+            secants: Secants::new(if mechanics.hints().reach.is_finite() { 3 * n } else { 0 }),
             evaluated: false,
         }
     }
@@ -92,11 +88,7 @@ impl Mechanical {
         let mut work = Work::default();
         let searches = newton != Newton::Once && mechanics.hints().reach.is_finite();
         let mut changes = Changes::new(!searches);
-        let most = if searches {
-            MAX_CONTACT_ITERATIONS
-        } else {
-            MAX_ITERATIONS
-        };
+        let most = if searches { MAX_CONTACT_ITERATIONS } else { MAX_ITERATIONS };
         self.evaluated = false;
         self.secants.clear();
         if searches {
@@ -135,11 +127,7 @@ impl Mechanical {
             if !changes.are_finite() {
                 break;
             }
-            settled = if change <= SETTLED_TOLERANCE * size {
-                settled + 1
-            } else {
-                0
-            };
+            settled = if change <= SETTLED_TOLERANCE * size { settled + 1 } else { 0 };
             if searches && (settled == SETTLED_ITERATIONS || iteration + 1 == most && settled > 0) {
                 return Ok(work);
             }
@@ -281,9 +269,7 @@ impl Mechanical {
             let inverse_masses = mechanics.inverse_masses();
             for column in self.gap.chunks_exact_mut(inverse_masses.len()) {
                 let pinned = column.iter_mut().zip(inverse_masses);
-                pinned
-                    .filter(|(_, w)| **w == 0.0)
-                    .for_each(|(gap, _)| *gap = 0.0);
+                pinned.filter(|(_, w)| **w == 0.0).for_each(|(gap, _)| *gap = 0.0);
             }
             joined.evaluate(mechanics, (t, a), [bx, x, &self.gap], newton);
         }
@@ -293,14 +279,7 @@ impl Mechanical {
     /// Writes M (bv - v) + a F - a K g for free particles to the right-hand side, with the K that
     /// was assembled last.
     pub(super) fn reduce(&mut self, mechanics: &dyn Linearized, a: f64, bv: &[f64], v: &[f64]) {
-        let Self {
-            solver,
-            f,
-            rhs,
-            gap,
-            joined,
-            ..
-        } = self;
+        let Self { solver, f, rhs, gap, joined, .. } = self;
         solver.tangent.filter(gap);
         let inverse_masses = mechanics.inverse_masses();
         let n = inverse_masses.len();
@@ -367,9 +346,7 @@ impl Mechanical {
                 let work = joined.solve(mechanics, &self.rhs, &mut self.dv);
                 (work, Some(0.0))
             }
-            None => self
-                .solver
-                .solve(mechanics, &self.rhs, &mut self.dv, tolerance),
+            None => self.solver.solve(mechanics, &self.rhs, &mut self.dv, tolerance),
         }
     }
 }

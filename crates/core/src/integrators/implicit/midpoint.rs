@@ -57,12 +57,7 @@ impl Divisible for ImplicitMidpoint {
         y: &mut [f64],
         work: &mut Work,
     ) -> Result<(), Error> {
-        let Self {
-            stage,
-            base,
-            end,
-            part,
-        } = self;
+        let Self { stage, base, end, part } = self;
         base.copy_from_slice(y);
         let half = 0.5 * h;
         *work += stage.solve(system, t + half, half, base, y, Newton::Mirrored)?;
@@ -78,16 +73,10 @@ impl Divisible for ImplicitMidpoint {
                 *part = 0.5 * (*part - end);
             }
             // Of that part, what the constraints do not allow at the beginning.
-            base[middle..]
-                .iter_mut()
-                .zip(&part[middle..])
-                .for_each(|(v, part)| *v += part);
+            base[middle..].iter_mut().zip(&part[middle..]).for_each(|(v, part)| *v += part);
             part[..middle].copy_from_slice(&base[..middle]);
             stage.project(system, part);
-            base[middle..]
-                .iter_mut()
-                .zip(&part[middle..])
-                .for_each(|(v, part)| *v -= part);
+            base[middle..].iter_mut().zip(&part[middle..]).for_each(|(v, part)| *v -= part);
             *work += stage.solve(system, t + half, half, base, y, Newton::Mirrored)?;
         }
         for (y, base) in y.iter_mut().zip(&*base) {

@@ -33,11 +33,7 @@ pub(super) enum Newton {
 impl Newton {
     /// Returns the largest number of iterations.
     pub fn most(self) -> u32 {
-        if self == Self::Once {
-            MAX_TRIED
-        } else {
-            MAX_ITERATIONS
-        }
+        if self == Self::Once { MAX_TRIED } else { MAX_ITERATIONS }
     }
 }
 
@@ -82,10 +78,7 @@ impl Secants {
             change: Vec::with_capacity(equations),
             ..Secant::default()
         };
-        Self {
-            kept: (0..MAX_SECANTS).map(|_| room()).collect(),
-            count: 0,
-        }
+        Self { kept: (0..MAX_SECANTS).map(|_| room()).collect(), count: 0 }
     }
 
     /// Forgets all.
@@ -103,9 +96,7 @@ impl Secants {
         secant.step.clear();
         secant.step.extend(step.iter().map(|s| share * s));
         secant.change.clear();
-        secant
-            .change
-            .extend(from.iter().zip(to).map(|(from, to)| from - to));
+        secant.change.extend(from.iter().zip(to).map(|(from, to)| from - to));
         secant.product = dot(&secant.step, &secant.change);
         let sizes = dot(&secant.step, &secant.step) * dot(&secant.change, &secant.change);
         if secant.product > MIN_COSINE * sizes.sqrt() {
@@ -208,11 +199,7 @@ impl Changes {
     /// system solved accurately enough; or whether changes no longer shrink, if the last one is
     /// below `noise`, relative to the state.
     pub fn are_over(&self, noise: f64) -> bool {
-        let shrinks = if self.foretell {
-            self.rate.min(1.0)
-        } else {
-            1.0
-        };
+        let shrinks = if self.foretell { self.rate.min(1.0) } else { 1.0 };
         let stay = self.rate.is_finite() && self.rate >= 0.5;
         let none = self.none;
         self.last * shrinks <= none && self.last * self.residual <= RESIDUAL_SHARE * none
@@ -237,9 +224,7 @@ impl Changes {
 
     /// Returns the error for changes that are not negligible after all iterations.
     pub fn failure(&self) -> Error {
-        Error::NoConvergence {
-            residual: self.last / self.first,
-        }
+        Error::NoConvergence { residual: self.last / self.first }
     }
 }
 
@@ -252,17 +237,14 @@ pub(super) fn rescale(k: &mut [Vec<f64>], ratio: f64) {
     // The polynomial through the ends is y0 + sum s (s + 1) ... (s + j - 1) / j! D_j: the new
     // differences are sums of the old ones, with a product of two triangular matrices as weights.
     let of_ratio = |i: usize, j: usize, ratio: f64| -> f64 {
-        (1..=i)
-            .map(|m| (m as f64 - 1.0 - ratio * j as f64) / m as f64)
-            .product()
+        (1..=i).map(|m| (m as f64 - 1.0 - ratio * j as f64) / m as f64).product()
     };
     let mut old = [0.0; MAX_ORDER];
     let mut weights = [[0.0; MAX_ORDER]; MAX_ORDER];
     for (i, row) in weights[..order].iter_mut().enumerate() {
         for (j, weight) in row[..order].iter_mut().enumerate() {
-            *weight = (1..=order)
-                .map(|m| of_ratio(j + 1, m, ratio) * of_ratio(m, i + 1, 1.0))
-                .sum();
+            *weight =
+                (1..=order).map(|m| of_ratio(j + 1, m, ratio) * of_ratio(m, i + 1, 1.0)).sum();
         }
     }
     for number in 0..k.first().map_or(0, Vec::len) {

@@ -77,9 +77,7 @@ impl Pattern {
                 }
             }
             let both = halves.into_iter().zip(found);
-            blocks = both
-                .map(|((columns, _), rows)| Block { columns, rows })
-                .collect();
+            blocks = both.map(|((columns, _), rows)| Block { columns, rows }).collect();
         }
         let columns: Vec<_> = blocks.into_iter().map(|block| block.rows).collect();
         Self::of(&columns, most)
@@ -188,12 +186,8 @@ mod tests {
         let mut count = 0;
         let found = Pattern::find(size, 1 << 22, |ranges| {
             count += 1;
-            let acted = |i: &u32| {
-                ranges
-                    .iter()
-                    .flat_map(Clone::clone)
-                    .any(|j| acts(*i as usize, j))
-            };
+            let acted =
+                |i: &u32| ranges.iter().flat_map(Clone::clone).any(|j| acts(*i as usize, j));
             (0..size as u32).filter(acted).collect()
         });
         (found, count)
@@ -207,10 +201,7 @@ mod tests {
         for j in 0..500 {
             let rows = found.rows[found.column(j)].iter();
             assert!(
-                rows.eq((0..500_u32)
-                    .filter(|i| acts(*i as usize, j))
-                    .collect::<Vec<_>>()
-                    .iter())
+                rows.eq((0..500_u32).filter(|i| acts(*i as usize, j)).collect::<Vec<_>>().iter())
             );
         }
         assert_eq!(found.colours.len(), 3);
@@ -238,9 +229,8 @@ mod tests {
     #[test]
     fn what_halves_do_not_tell_apart_is_found_by_columns() {
         let mixed = |k: usize| k * 163 % 500;
-        let shapes: [&dyn Fn(usize, usize) -> bool; 2] = [&|i, j| i == j || i == 7, &|i, j| {
-            mixed(i).abs_diff(mixed(j)) <= 1
-        }];
+        let shapes: [&dyn Fn(usize, usize) -> bool; 2] =
+            [&|i, j| i == j || i == 7, &|i, j| mixed(i).abs_diff(mixed(j)) <= 1];
         for (acts, colours) in shapes.into_iter().zip([500, 5]) {
             let (found, count) = search(500, acts);
             let found = found.unwrap();

@@ -37,27 +37,12 @@ pub(crate) const METHOD: Method = Method {
 
 /// Weights of the displacements in the estimate of the error, and of its formula in the polynomial
 /// y0 + theta `q_1` + `theta^2 q_2` + `theta^3 q_3`, whose vectors are sums of displacements.
-const ERROR_WEIGHTS: [f64; STAGES] = [
-    (-13.0 - 7.0 * ROOT6) / 3.0,
-    (-13.0 + 7.0 * ROOT6) / 3.0,
-    -1.0 / 3.0,
-];
+const ERROR_WEIGHTS: [f64; STAGES] =
+    [(-13.0 - 7.0 * ROOT6) / 3.0, (-13.0 + 7.0 * ROOT6) / 3.0, -1.0 / 3.0];
 const POLYNOMIAL: [[f64; STAGES]; STAGES] = [
-    [
-        (13.0 + 7.0 * ROOT6) / 3.0,
-        (13.0 - 7.0 * ROOT6) / 3.0,
-        1.0 / 3.0,
-    ],
-    [
-        (-23.0 - 22.0 * ROOT6) / 3.0,
-        (-23.0 + 22.0 * ROOT6) / 3.0,
-        -8.0 / 3.0,
-    ],
-    [
-        10.0 / 3.0 + 5.0 * ROOT6,
-        10.0 / 3.0 - 5.0 * ROOT6,
-        10.0 / 3.0,
-    ],
+    [(13.0 + 7.0 * ROOT6) / 3.0, (13.0 - 7.0 * ROOT6) / 3.0, 1.0 / 3.0],
+    [(-23.0 - 22.0 * ROOT6) / 3.0, (-23.0 + 22.0 * ROOT6) / 3.0, -8.0 / 3.0],
+    [10.0 / 3.0 + 5.0 * ROOT6, 10.0 / 3.0 - 5.0 * ROOT6, 10.0 / 3.0],
 ];
 
 /// Largest product |x| |x - `c_1`| |x - `c_2`| |x - 1| of the distances of a place x in the step
@@ -74,10 +59,7 @@ const MIN_STEP_RATIO: f64 = 1.2;
 const RETREAT: f64 = 0.5;
 /// Tolerance to which the equations of a fixed step are solved, by the share of it that may remain:
 /// to 1e-12 of the state.
-const FIXED: Tolerance = Tolerance {
-    relative: 1e-8,
-    absolute: 1e-8,
-};
+const FIXED: Tolerance = Tolerance { relative: 1e-8, absolute: 1e-8 };
 
 /// Places of the vectors of a step: f at its beginning and at its end, the vectors of the
 /// polynomial, and the state at which the Jacobian was formed.
@@ -163,8 +145,7 @@ impl Radau {
                 }
             }
         }
-        self.foreseen
-            .copy_from_slice(&self.equations.stages[STAGES - 1]);
+        self.foreseen.copy_from_slice(&self.equations.stages[STAGES - 1]);
     }
 
     /// Returns the error of states within the step over the allowed one. The error of a polynomial
@@ -385,22 +366,12 @@ impl Trial for Radau {
     }
 
     fn last(&self) -> LastStep {
-        let Memory {
-            has_jacobian,
-            renews,
-            has_past,
-            error,
-        } = self.memory;
+        let Memory { has_jacobian, renews, has_past, error } = self.memory;
         let mut step = self.step.clone();
         step.k[FORMED].copy_from_slice(&self.equations.formed.1);
         step.counts = [has_jacobian, renews, has_past].map(usize::from).to_vec();
         step.counts.extend(self.equations.jacobian.pattern());
-        let Collocation {
-            formed,
-            remaining,
-            factored,
-            ..
-        } = &self.equations;
+        let Collocation { formed, remaining, factored, .. } = &self.equations;
         step.numbers = vec![formed.0[0], formed.0[1], *remaining, error, *factored];
         step
     }
@@ -417,23 +388,14 @@ impl Trial for Radau {
             return Err(Error::Invalid("the last step is of another system".into()));
         }
         self.step.resume(step)?;
-        let Collocation {
-            formed,
-            remaining: own,
-            factored: step_of_factors,
-            ..
-        } = &mut self.equations;
+        let Collocation { formed, remaining: own, factored: step_of_factors, .. } =
+            &mut self.equations;
         formed.0 = [t, h];
         formed.1.copy_from_slice(&step.k[FORMED]);
         (*own, *step_of_factors) = (remaining, factored);
         let [has_jacobian, renews, has_past] =
             [has_jacobian, renews, has_past].map(|flag| flag != 0);
-        self.memory = Memory {
-            has_jacobian,
-            renews,
-            has_past,
-            error,
-        };
+        self.memory = Memory { has_jacobian, renews, has_past, error };
         (self.is_fresh, self.rejected, self.resumed) = (false, false, true);
         Ok(())
     }
@@ -450,18 +412,11 @@ impl Integrator for Radau {
         check_dim(self.dim(), y)?;
         self.begin(system, t, y);
         self.check(system)?;
-        let norm = ErrorNorm {
-            system,
-            tolerance: FIXED,
-            sizes: &[],
-            h,
-        };
+        let norm = ErrorNorm { system, tolerance: FIXED, sizes: &[], h };
         let (work, solved) = self.solve(t, &norm, MAX_ITERATIONS[1]);
         if !solved {
             self.equations.jacobian.check()?;
-            return Err(Error::NoConvergence {
-                residual: self.equations.rate(),
-            });
+            return Err(Error::NoConvergence { residual: self.equations.rate() });
         }
         y.copy_from_slice(&self.step.y1);
         Ok(work)

@@ -46,10 +46,7 @@ pub(super) struct Sparse<T> {
 impl<T: ComplexField<RealField = f64> + Copy> Sparse<T> {
     /// Creates room for the factors of a matrix of this order.
     pub fn new(order: usize) -> Self {
-        let columns = || Columns {
-            starts: vec![],
-            entries: vec![],
-        };
+        let columns = || Columns { starts: vec![], entries: vec![] };
         Self {
             order: vec![],
             ranks: vec![NONE; order],
@@ -172,15 +169,7 @@ impl<T: ComplexField<RealField = f64> + Copy> Sparse<T> {
 
     /// Replaces a right-hand side by its solution.
     pub fn solve(&mut self, b: &mut [T]) {
-        let Self {
-            order,
-            pivots,
-            lower,
-            upper,
-            reciprocals,
-            column: x,
-            ..
-        } = self;
+        let Self { order, pivots, lower, upper, reciprocals, column: x, .. } = self;
         for (rank, row) in pivots.iter().enumerate() {
             x[rank] = b[*row as usize];
             for (other, share) in &lower.entries[lower.starts[rank]..lower.starts[rank + 1]] {

@@ -40,10 +40,9 @@ impl StageSolver {
                 stage.solve(linearized, t, a, base, y, newton)
             }
             (Self::Dense(stage), _) => stage.solve(system, t, a, base, y, newton),
-            (Self::Mechanical(_), None) => Err(Error::Unsupported {
-                method: "the implicit method",
-                why: Refusal::LacksMasses,
-            }),
+            (Self::Mechanical(_), None) => {
+                Err(Error::Unsupported { method: "the implicit method", why: Refusal::LacksMasses })
+            }
         }
     }
 

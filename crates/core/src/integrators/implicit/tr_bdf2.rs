@@ -32,12 +32,7 @@ pub(crate) const METHOD: Method = Method {
 /// Creates an integrator for a system.
 pub(super) fn integrator(system: &dyn ParticleSystem) -> Box<dyn Integrator> {
     let zeros = || vec![0.0; system.dim()];
-    Box::new(TrBdf2 {
-        stage: StageSolver::new(system),
-        f1: zeros(),
-        base: zeros(),
-        last: zeros(),
-    })
+    Box::new(TrBdf2 { stage: StageSolver::new(system), f1: zeros(), base: zeros(), last: zeros() })
 }
 
 const G: f64 = 1.0 - FRAC_1_SQRT_2;
@@ -64,12 +59,7 @@ impl Divisible for TrBdf2 {
         y: &mut [f64],
         work: &mut Work,
     ) -> Result<(), Error> {
-        let Self {
-            stage,
-            f1,
-            base,
-            last,
-        } = self;
+        let Self { stage, f1, base, last } = self;
         system.eval_f(t, y, f1);
         *work += Work::of(1);
         for (((y, f1), base), last) in y.iter().zip(&*f1).zip(&mut *base).zip(&mut *last) {

@@ -50,11 +50,7 @@ impl Aggregates {
         let neighbours = Lists::new(n, strong);
         let (of, count) = choose(&neighbours, n);
         let shares = (0..n).flat_map(|i| shares(i, &neighbours, &of));
-        Self {
-            count,
-            shares: Lists::new(n, shares),
-            of,
-        }
+        Self { count, shares: Lists::new(n, shares), of }
     }
 }
 
@@ -72,10 +68,7 @@ fn choose(neighbours: &Lists<(u32, f64)>, n: usize) -> (Vec<u32>, usize) {
     }
     let seeds = of.clone();
     for i in (0..n).filter(|i| seeds[*i] == NONE) {
-        let near = neighbours
-            .of(i)
-            .iter()
-            .map(|(j, s)| (seeds[*j as usize], *s));
+        let near = neighbours.of(i).iter().map(|(j, s)| (seeds[*j as usize], *s));
         let near = near.filter(|(aggregate, _)| *aggregate != NONE);
         // The first of equally strong ones.
         if let Some((aggregate, _)) = near.reduce(|a, b| if b.1 > a.1 { b } else { a }) {

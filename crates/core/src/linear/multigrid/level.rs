@@ -66,10 +66,7 @@ impl Level {
             own: vec![[0.0; 6]; count],
             couplings: vec![[0.0; 6]; ends.len()],
             inverses: vec![[0.0; 6]; count],
-            before: Lists::new(
-                count,
-                numbered.clone().map(|(k, e)| (e[1], (e[0], k as u32))),
-            ),
+            before: Lists::new(count, numbered.clone().map(|(k, e)| (e[1], (e[0], k as u32)))),
             after: Lists::new(count, numbered.map(|(k, e)| (e[0], (e[1], k as u32)))),
             r: vec![[0.0; 3]; count],
             z: vec![[0.0; 3]; count],
@@ -77,11 +74,7 @@ impl Level {
             ends: ends.clone(),
             of,
         };
-        let graph = Graph {
-            particles: count,
-            ends,
-            strengths,
-        };
+        let graph = Graph { particles: count, ends, strengths };
         Some((level, graph))
     }
 
@@ -201,10 +194,7 @@ fn join(finer: &[[u32; 2]], of: &[u32], count: usize) -> (Vec<[u32; 2]>, Vec<u32
     for a in 0..count as u32 {
         for (b, k) in by_aggregate.of(a as usize) {
             let coupling = &mut last[*b as usize];
-            if ends
-                .get(*coupling as usize)
-                .is_none_or(|e: &[u32; 2]| e[0] != a)
-            {
+            if ends.get(*coupling as usize).is_none_or(|e: &[u32; 2]| e[0] != a) {
                 *coupling = ends.len() as u32;
                 ends.push([a, *b]);
             }
@@ -229,9 +219,5 @@ fn add_scaled(sum: &mut [f64; 3], share: f64, of: [f64; 3]) {
 
 #[inline]
 fn times([xx, yy, zz, xy, xz, yz]: &Block, [x, y, z]: [f64; 3]) -> [f64; 3] {
-    [
-        xx * x + xy * y + xz * z,
-        xy * x + yy * y + yz * z,
-        xz * x + yz * y + zz * z,
-    ]
+    [xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z]
 }

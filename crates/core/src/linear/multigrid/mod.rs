@@ -44,12 +44,7 @@ impl Multigrid {
             levels.push(level);
             graph = coarser;
         }
-        Self {
-            levels,
-            pattern: tangent.pattern(),
-            free: tangent.free().to_vec(),
-            version: 0,
-        }
+        Self { levels, pattern: tangent.pattern(), free: tangent.free().to_vec(), version: 0 }
     }
 
     /// Returns whether the pattern and the pinned particles are the same.
@@ -101,21 +96,13 @@ impl Multigrid {
         first.restrict(|i| [r[i], r[n + i], r[2 * n + i]]);
         cycle(&mut self.levels);
         let first = &self.levels[0];
-        first
-            .r
-            .as_flattened()
-            .iter()
-            .zip(first.z.as_flattened())
-            .map(|(r, z)| r * z)
-            .sum()
+        first.r.as_flattened().iter().zip(first.z.as_flattened()).map(|(r, z)| r * z).sum()
     }
 
     /// Returns the solution at a particle.
     #[inline]
     pub fn solution(&self, i: usize) -> [f64; 3] {
-        self.levels
-            .first()
-            .map_or([0.0; 3], |first| first.prolong(i))
+        self.levels.first().map_or([0.0; 3], |first| first.prolong(i))
     }
 }
 

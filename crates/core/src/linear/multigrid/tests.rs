@@ -12,9 +12,7 @@ fn thicket(seed: u64, particles: usize) -> (Network, Vec<f64>) {
     let mut random = SplitMix(seed);
     let masses = (0..particles).map(|_| libm::exp(random.between(-7.0, 1.0)));
     let mut network = Network::new(masses.collect()).unwrap();
-    let x: Vec<f64> = (0..3 * particles)
-        .map(|_| random.between(0.0, 1.0))
-        .collect();
+    let x: Vec<f64> = (0..3 * particles).map(|_| random.between(0.0, 1.0)).collect();
     let at = |i: usize| Vector3::new(x[i], x[particles + i], x[2 * particles + i]);
     for i in (0..particles).filter(|i| i % 17 != 3) {
         for j in (i + 1..particles).filter(|j| j % 17 != 3) {

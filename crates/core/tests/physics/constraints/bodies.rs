@@ -17,12 +17,7 @@ fn hung(
 ) -> (Network, Vec<f64>) {
     let mut network = Network::new(vec![mass; 3]).unwrap();
     add_bar(&mut network, 0, inertia, arm);
-    network
-        .add_constraint(Constraint::Point {
-            particle: 1,
-            position: ZERO,
-        })
-        .unwrap();
+    network.add_constraint(Constraint::Point { particle: 1, position: ZERO }).unwrap();
     network.set_gravity(vector(0.0, -G, 0.0));
     let mut rotation = Rotation::about(about);
     let center = rotation.matrix() * arm;
@@ -40,10 +35,7 @@ fn hung(
 /// A bar whose centre is the particle `center`, and whose ends are the two particles after it.
 fn add_bar(network: &mut Network, center: usize, inertia: Vector3<f64>, arm: Vector3<f64>) {
     let (ends, radius) = ([-arm, arm], 0.05);
-    let part = Part {
-        shape: Shape::Capsule { ends, radius },
-        at: ZERO,
-    };
+    let part = Part { shape: Shape::Capsule { ends, radius }, at: ZERO };
     let body = Body::new(center, center + 1, inertia, vec![part]).unwrap();
     network.add_body(body).unwrap();
 }
@@ -106,10 +98,7 @@ fn a_top_keeps_what_it_turns_with() {
     let before = seen(&y);
     let y = run(&network, "dop853", &y, 2e-3, 1_500);
     for (after, before) in seen(&y).iter().zip(before) {
-        assert!(
-            (after / before - 1.0).abs() < 1e-10,
-            "{after} from {before}"
-        );
+        assert!((after / before - 1.0).abs() < 1e-10, "{after} from {before}");
     }
     // It has turned about the vertical, and nodded.
     let tip = vector(y[1], y[4], y[7]);
@@ -121,18 +110,8 @@ fn a_top_keeps_what_it_turns_with() {
 /// Two bars, joined by a rod at their ends, and a particle on a rod at another end, fly and tumble.
 fn flying() -> (Network, Vec<f64>) {
     let mut network = Network::new(vec![2.0, 1.0, 1.0, 1.3, 1.0, 1.0, 0.4]).unwrap();
-    add_bar(
-        &mut network,
-        0,
-        vector(0.3, 0.02, 0.29),
-        vector(0.0, 0.5, 0.0),
-    );
-    add_bar(
-        &mut network,
-        3,
-        vector(0.03, 0.2, 0.21),
-        vector(0.4, 0.0, 0.0),
-    );
+    add_bar(&mut network, 0, vector(0.3, 0.02, 0.29), vector(0.0, 0.5, 0.0));
+    add_bar(&mut network, 3, vector(0.03, 0.2, 0.21), vector(0.4, 0.0, 0.0));
     let mut y = vec![0.0; network.dim()];
     let n = 7;
     for (k, y) in y[..6 * n].iter_mut().enumerate() {
@@ -232,12 +211,7 @@ fn rods_of_a_scene_end_where_bodies_begin() {
         rod = [0, 3]",
     );
     let network = scene.model.network().unwrap();
-    let Constraint::Rod { length, .. } = network.constraints()[0] else {
-        panic!("a rod")
-    };
+    let Constraint::Rod { length, .. } = network.constraints()[0] else { panic!("a rod") };
     let [left, right] = [(-0.6f64 - 0.6), 0.0].map(|x| x.hypot(0.8));
-    assert!(
-        (length - left).abs().min((length - right).abs()) < 1e-12,
-        "{length}"
-    );
+    assert!((length - left).abs().min((length - right).abs()) < 1e-12, "{length}");
 }

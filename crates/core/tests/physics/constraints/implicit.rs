@@ -6,11 +6,7 @@ use a3_core::{Control, Model, Path, Scene, Simulation, Vector3};
 
 use super::*;
 
-const METHODS: [(&str, f64); 3] = [
-    ("implicit", 1.0),
-    ("tr-bdf2", 2.0),
-    ("implicit-midpoint", 2.0),
-];
+const METHODS: [(&str, f64); 3] = [("implicit", 1.0), ("tr-bdf2", 2.0), ("implicit-midpoint", 2.0)];
 
 /// Two rods of 1 m with particles of 1 kg, which are released in the direction (0.6, 0.8, 0).
 fn double_pendulum() -> (Network, Vec<f64>) {
@@ -54,10 +50,7 @@ fn implicit_methods_keep_their_orders_on_a_double_pendulum() {
 
 #[test]
 fn implicit_methods_keep_their_orders_on_a_wire() {
-    let (network, quarter) = (
-        network(&[0.5], &[wire()]),
-        0.25 * period(G.sqrt(), 0.5 * PI),
-    );
+    let (network, quarter) = (network(&[0.5], &[wire()]), 0.25 * period(G.sqrt(), 0.5 * PI));
     let y = state(&[vector(1.0, 0.0, 0.0)], &[ZERO]);
     for (name, order) in METHODS {
         let error = |h: f64| {
@@ -114,11 +107,7 @@ fn the_midpoint_rule_keeps_the_energy_of_rods() {
 fn free_rods_keep_their_momentum() {
     let network = weightless(&[1.0, 0.5, 2.0], &[rod(0, 1, 1.0), rod(1, 2, 1.5)]);
     let x = [ZERO, vector(1.0, 0.0, 0.0), vector(1.0, 1.5, 0.0)];
-    let v = [
-        vector(0.0, -2.0, 1.0),
-        vector(0.0, 1.0, 0.0),
-        vector(0.3, 1.0, -1.0),
-    ];
+    let v = [vector(0.0, -2.0, 1.0), vector(0.0, 1.0, 0.0), vector(0.3, 1.0, -1.0)];
     let y = state(&x, &v);
     let momentum = |y: &[f64]| -> [Vector3<f64>; 2] {
         let parts = (0..3).map(|i| {
@@ -128,11 +117,7 @@ fn free_rods_keep_their_momentum() {
         parts.fold([ZERO; 2], |sum, part| [sum[0] + part[0], sum[1] + part[1]])
     };
     let before = momentum(&y);
-    for (name, turning) in [
-        ("implicit", 1.0),
-        ("tr-bdf2", 1e-2),
-        ("implicit-midpoint", 1e-5),
-    ] {
+    for (name, turning) in [("implicit", 1.0), ("tr-bdf2", 1e-2), ("implicit-midpoint", 1e-5)] {
         let after = momentum(&integrate(&network, method(name), &y, 0.01, 200));
         assert!((after[0] - before[0]).norm() < 1e-12, "{name}");
         let change = (after[1] - before[1]).norm();

@@ -19,22 +19,13 @@ fn a_door_stops_at_its_limit_at_the_right_time() {
         body = 0
         hinge = { at = [0, 0, 0], axis = [0, 1, 0], limits = [0, 1.5] }",
     );
-    for (name, value) in [
-        ("dop853", 1e-10),
-        ("rk4", 0.01),
-        ("tr-bdf2", 0.01),
-        ("euler", 1e-3),
-    ] {
+    for (name, value) in [("dop853", 1e-10), ("rk4", 0.01), ("tr-bdf2", 0.01), ("euler", 1e-3)] {
         let angle = |run: &Simulation| {
             let at = run.position(0);
             (-at.z).atan2(at.x)
         };
         let before = simulated(&door, name, value, 0.74);
-        assert!(
-            (angle(&before) - 1.48).abs() < 2e-3,
-            "{name}: {}",
-            angle(&before)
-        );
+        assert!((angle(&before) - 1.48).abs() < 2e-3, "{name}: {}", angle(&before));
         for time in [0.76, 2.0] {
             let after = simulated(&door, name, value, time);
             let off = angle(&after) - 1.5;
@@ -46,10 +37,7 @@ fn a_door_stops_at_its_limit_at_the_right_time() {
                 },
                 velocity_of(&after, 0).norm(),
             );
-            assert!(
-                off.abs() < most && speed < most,
-                "{name}: {off:e}, {speed:e}"
-            );
+            assert!(off.abs() < most && speed < most, "{name}: {off:e}, {speed:e}");
         }
     }
 }
@@ -67,12 +55,7 @@ fn a_box_slides_along_its_axis_to_its_end() {
         slider = {{ axis = [0.8, -0.6, 0], limits = [-1, 1.2] }}"
     ));
     let way = vector(0.8, -0.6, 0.0);
-    for (name, value) in [
-        ("dop853", 1e-10),
-        ("rk4", 0.01),
-        ("verlet", 0.01),
-        ("bdf", 1e-8),
-    ] {
+    for (name, value) in [("dop853", 1e-10), ("rk4", 0.01), ("verlet", 0.01), ("bdf", 1e-8)] {
         let run_to = |time| simulated(&slope, name, value, time);
         let slid = run_to(0.5).position(0) - way * (0.5 * 0.6 * G * 0.25);
         assert!(slid.norm() < 1e-7, "{name}: {slid}");
@@ -162,20 +145,16 @@ fn a_cloth_is_attached_to_a_turning_body() {
     let network = scene.model.network().unwrap();
     let attached = |run: &Simulation| {
         let pose = network.pose(0, run.state());
-        (0..5)
-            .map(move |i| pose.inwards(run.position(i) - pose.place.position))
-            .collect::<Vec<_>>()
+        (0..5).map(move |i| pose.inwards(run.position(i) - pose.place.position)).collect::<Vec<_>>()
     };
     let total = |run: &Simulation| {
         let moved = (0..20).map(|i| velocity_of(run, i) * network.masses()[i]);
         moved.sum::<Vector3<f64>>() + momenta(run).0
     };
     let begun = simulated(&scene, "dop853", 1e-9, 0.0);
-    for (name, value, most) in [
-        ("dop853", 1e-9, 1e-9),
-        ("rk4", 2e-3, 1e-6),
-        ("implicit", 0.02, 1e-10),
-    ] {
+    for (name, value, most) in
+        [("dop853", 1e-9, 1e-9), ("rk4", 2e-3, 1e-6), ("implicit", 0.02, 1e-10)]
+    {
         let run = simulated(&scene, name, value, 0.5);
         assert!(joint_error(&run) < most, "{name}: {:e}", joint_error(&run));
         for (a, b) in attached(&run).iter().zip(attached(&begun)) {
@@ -183,10 +162,7 @@ fn a_cloth_is_attached_to_a_turning_body() {
         }
         let change = total(&run) - total(&begun);
         assert!(change.norm() < 1e-9, "{name}: {change}");
-        assert!(
-            (run.position(19) - begun.position(19)).norm() > 0.1,
-            "{name}"
-        );
+        assert!((run.position(19) - begun.position(19)).norm() > 0.1, "{name}");
     }
 }
 
@@ -249,15 +225,9 @@ fn every_method_holds_joints_or_refuses_them() {
 /// and the energy never grows.
 #[test]
 fn impacts_end_where_joints_end() {
-    let path = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../../docs/scenes/doll.toml"
-    );
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../docs/scenes/doll.toml");
     let doll = std::fs::read_to_string(path).unwrap();
-    let doll = doll.replace(
-        "axis = [1, 0, 0] }",
-        "axis = [1, 0, 0], limits = [-0.1, 2.2] }",
-    );
+    let doll = doll.replace("axis = [1, 0, 0] }", "axis = [1, 0, 0], limits = [-0.1, 2.2] }");
     assert_eq!(doll.matches("limits").count(), 2);
     let doll = doll.replace("spin = [0.8, 0, 0.4]", "");
     for seed in [2_u64, 4, 7] {
@@ -271,11 +241,7 @@ fn impacts_end_where_joints_end() {
         let speed = random(5.0, 30.0);
         let (around, down) = (random(0.0, std::f64::consts::TAU), random(0.3, 1.5));
         let level = speed * down.cos();
-        let (x, y, z) = (
-            level * around.cos(),
-            -speed * down.sin(),
-            level * around.sin(),
-        );
+        let (x, y, z) = (level * around.cos(), -speed * down.sin(), level * around.sin());
         let spin = [random(-8.0, 8.0), random(-8.0, 8.0), random(-8.0, 8.0)];
         let thrown = format!("[[body]]\nvelocity = [{x}, {y}, {z}]\nspin = {spin:?}\n");
         let scene = described(&doll.replace("[[body]]", &thrown));
@@ -283,11 +249,7 @@ fn impacts_end_where_joints_end() {
         let begun = energy(&run);
         for _ in 0..20 {
             run.take_steps(5).unwrap();
-            assert!(
-                energy(&run) <= begun * (1.0 + 1e-6),
-                "{seed}: {}",
-                energy(&run)
-            );
+            assert!(energy(&run) <= begun * (1.0 + 1e-6), "{seed}: {}", energy(&run));
             let worst = run.worst_constraint().unwrap();
             assert!(worst.share < 0.1, "{seed}: {}", worst.share);
         }

@@ -58,10 +58,7 @@ fn a_bar_on_a_hinge_has_the_period_of_an_elliptic_integral() {
         let steps = if order < 1.5 { 1600.0 } else { 200.0 };
         let [(coarse, _), (fine, broken)] = [1.0, 2.0].map(|k| error(name, quarter / steps / k));
         let slope = (coarse / fine).log2();
-        assert!(
-            (slope - order).abs() < 0.2,
-            "{name}: {coarse:e} {fine:e}, slope {slope:.2}"
-        );
+        assert!((slope - order).abs() < 0.2, "{name}: {coarse:e} {fine:e}, slope {slope:.2}");
         if method(name).is_implicit() {
             assert!(broken < 1e-10, "{name}: {broken:e}");
         }
@@ -134,12 +131,7 @@ fn a_motor_pushes_a_box_along_its_slider() {
              [[joint]]\nbody = 0\nslider = {{ axis = [0, 2, 0], {motor} }}"
         ))
     };
-    for (name, value) in [
-        ("dop853", 1e-10),
-        ("rk4", 0.01),
-        ("tr-bdf2", 0.01),
-        ("verlet", 0.01),
-    ] {
+    for (name, value) in [("dop853", 1e-10), ("rk4", 0.01), ("tr-bdf2", 0.01), ("verlet", 0.01)] {
         let weight = format!("gravity = [0, -{G}, 0]");
         let constant = simulated(&lift(&weight, "force = 36"), name, value, 1.5);
         let risen = constant.position(0) - vector(0.0, 0.5 * (12.0 - G) * 2.25, 0.0);
@@ -289,11 +281,7 @@ fn fixed_bodies_move_as_one() {
     let part = |x: f64, fixed: bool| {
         format!(
             "[[body]]\nparts = [{{ box = [0.4, 0.3, 0.2] }}]\nmass = 1\nat = [{x}, 0, 0]\n{}",
-            if fixed {
-                "velocity = [0, 0, 0]\nspin = [1, 2, 0.5]\n"
-            } else {
-                ""
-            }
+            if fixed { "velocity = [0, 0, 0]\nspin = [1, 2, 0.5]\n" } else { "" }
         )
     };
     let joined = described(&format!(

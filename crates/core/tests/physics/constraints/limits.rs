@@ -11,10 +11,7 @@ use super::*;
 
 #[test]
 fn a_rod_too_many_changes_nothing() {
-    let start = state(
-        &[ZERO, vector(0.6, -0.8, 0.0), vector(0.6, -0.8, 2.0)],
-        &[ZERO; 3],
-    );
+    let start = state(&[ZERO, vector(0.6, -0.8, 0.0), vector(0.6, -0.8, 2.0)], &[ZERO; 3]);
     let plain = [rod(0, 1, 1.0), rod(1, 2, 2.0)];
     let run = |more: &[Constraint], pins: usize| {
         let mut network = network(&[1.0, 0.5, 2.0], &[&plain, more].concat());
@@ -56,30 +53,13 @@ fn a_flat_triangle_of_rods_turns_as_one() {
 
 #[test]
 fn what_cannot_be_held_stays_finite() {
-    let point = |x| Constraint::Point {
-        particle: 0,
-        position: vector(x, 0.0, 0.0),
-    };
+    let point = |x| Constraint::Point { particle: 0, position: vector(x, 0.0, 0.0) };
     let both = weightless(&[1.0], &[point(-1.0), point(2.0)]);
-    let y = integrate(
-        &both,
-        method("rk4"),
-        &state(&[vector(0.1, 0.3, 0.2)], &[ZERO]),
-        1e-3,
-        5_000,
-    );
+    let y = integrate(&both, method("rk4"), &state(&[vector(0.1, 0.3, 0.2)], &[ZERO]), 1e-3, 5_000);
     // Contradictory constraints are met as nearly as possible.
     assert!(distance(&y, &state(&[vector(0.5, 0.0, 0.0)], &[ZERO])) < 1e-9);
-    let rods = [
-        rod(0, 1, 1.0),
-        rod(0, 1, 3.0),
-        rod(1, 2, 1.0),
-        rod(2, 0, 7.0),
-    ];
-    let y = state(
-        &[ZERO, vector(2.0, 0.0, 0.0), vector(3.0, 0.0, 0.0)],
-        &[ZERO; 3],
-    );
+    let rods = [rod(0, 1, 1.0), rod(0, 1, 3.0), rod(1, 2, 1.0), rod(2, 0, 7.0)];
+    let y = state(&[ZERO, vector(2.0, 0.0, 0.0), vector(3.0, 0.0, 0.0)], &[ZERO; 3]);
     let impossible = network(&[1.0, 2.0, 0.1], &rods);
     let y = integrate(&impossible, method("rk4"), &y, 1e-3, 1_000);
     assert!(size(&y) < 10.0, "{y:?}");
@@ -88,11 +68,7 @@ fn what_cannot_be_held_stays_finite() {
 /// At the centre of a sphere no direction is defined: the constraint adds no force, and no NaN.
 #[test]
 fn in_a_centre_nothing_holds() {
-    let sphere = Constraint::Sphere {
-        particle: 0,
-        center: ZERO,
-        radius: 1.0,
-    };
+    let sphere = Constraint::Sphere { particle: 0, center: ZERO, radius: 1.0 };
     let network = network(&[1.0, 1.0], &[sphere, rod(0, 1, 1.0)]);
     let mut f = [f64::NAN; 6];
     network.forces(0.0, &[0.0; 6], &[3.0; 6], &mut f);
@@ -106,31 +82,14 @@ fn in_a_centre_nothing_holds() {
 fn what_is_off_comes_back() {
     let slope = vector(0.6, 0.8, 0.0);
     for (constraint, x) in [
+        (Constraint::Point { particle: 0, position: slope }, slope + vector(0.1, 0.0, 0.0)),
         (
-            Constraint::Point {
-                particle: 0,
-                position: slope,
-            },
-            slope + vector(0.1, 0.0, 0.0),
-        ),
-        (
-            Constraint::Line {
-                particle: 0,
-                point: ZERO,
-                direction: vector(-0.8, 0.6, 0.0),
-            },
+            Constraint::Line { particle: 0, point: ZERO, direction: vector(-0.8, 0.6, 0.0) },
             slope * 0.1,
         ),
         (wire(), slope * 1.1),
         (wire(), slope + vector(0.0, 0.0, 0.1)),
-        (
-            Constraint::Sphere {
-                particle: 0,
-                center: ZERO,
-                radius: 1.0,
-            },
-            slope * 0.9,
-        ),
+        (Constraint::Sphere { particle: 0, center: ZERO, radius: 1.0 }, slope * 0.9),
         (rod(0, 1, 1.0), slope * 0.9),
     ] {
         for w in [10.0, 20.0] {
@@ -141,10 +100,7 @@ fn what_is_off_comes_back() {
                 let end = integrate(&network, method("dop853"), &y, t / 400.0, 400);
                 let exact = 0.1 * (1.0 + w * t) * (-w * t).exp();
                 let found = error(&network, &end);
-                assert!(
-                    (found - exact).abs() < 1e-9,
-                    "{constraint:?}, {t} s: {found}"
-                );
+                assert!((found - exact).abs() < 1e-9, "{constraint:?}, {t} s: {found}");
             }
         }
     }
@@ -160,10 +116,7 @@ fn methods_that_do_not_serve_constraints_refuse_in_one_line() {
         assert_eq!(m.check(&constrained).is_err(), refuses, "{}", m.name);
         if let Err(refused) = m.integrator(&constrained) {
             let line = refused.to_string();
-            assert!(
-                line.starts_with(m.title) && line.contains("explicit"),
-                "{line}"
-            );
+            assert!(line.starts_with(m.title) && line.contains("explicit"), "{line}");
             assert!(!line.contains('\n'));
         } else {
             integrate(&constrained, m, &y, 1e-3, 3);
@@ -176,26 +129,12 @@ fn constraints_that_make_no_sense_are_refused() {
     let mut network = network(&[1.0; 2], &[]);
     assert_eq!(network.constraint_error(&[0.0; 6]), None);
     assert!(!network.forces_in_use().contains(&"constraints"));
-    let point = |particle, x| Constraint::Point {
-        particle,
-        position: vector(x, 0.0, 0.0),
-    };
-    let circle = |normal, radius| Constraint::Circle {
-        particle: 0,
-        center: ZERO,
-        normal,
-        radius,
-    };
-    let sphere = |x, radius| Constraint::Sphere {
-        particle: 1,
-        center: vector(0.0, x, 0.0),
-        radius,
-    };
-    let line = |x, direction| Constraint::Line {
-        particle: 1,
-        point: vector(0.0, x, 0.0),
-        direction,
-    };
+    let point = |particle, x| Constraint::Point { particle, position: vector(x, 0.0, 0.0) };
+    let circle = |normal, radius| Constraint::Circle { particle: 0, center: ZERO, normal, radius };
+    let sphere =
+        |x, radius| Constraint::Sphere { particle: 1, center: vector(0.0, x, 0.0), radius };
+    let line =
+        |x, direction| Constraint::Line { particle: 1, point: vector(0.0, x, 0.0), direction };
     let up = vector(0.0, 1.0, 0.0);
     for (constraint, says) in [
         (point(2, 0.0), "0 to 1"),
@@ -261,11 +200,7 @@ fn a_hand_gets_no_farther_than_rods_let_it() {
         let mut furthest = 0.0f64;
         for k in 0..600 {
             let turn = f64::from(k / 20) * 2.4;
-            run.pull(vector(
-                8.0 * turn.cos(),
-                8.0 * (1.3 * turn).sin(),
-                turn.sin(),
-            ));
+            run.pull(vector(8.0 * turn.cos(), 8.0 * (1.3 * turn).sin(), turn.sin()));
             run.take_steps(4).unwrap();
             furthest = furthest.max(error(run.model().network().unwrap(), run.state()));
         }
@@ -295,11 +230,7 @@ fn a_hand_keeps_the_length_of_a_rod() {
         run.grab(1).unwrap();
         run.pull(target);
         run.advance_to(3.0).unwrap();
-        assert!(
-            (run.position(1) - end).norm() < 1e-12,
-            "{}",
-            run.position(1)
-        );
+        assert!((run.position(1) - end).norm() < 1e-12, "{}", run.position(1));
     }
 }
 
@@ -325,9 +256,8 @@ fn stability_knows_of_the_feedback() {
 fn a_sheet_hangs_from_points_as_from_pins() {
     let grid = Grid::new(4, 5).unwrap();
     let n = grid.particles();
-    let x: Vec<_> = (0..n)
-        .map(|k| vector(0.5 * (k % 5) as f64, 0.0, 0.5 * (k / 5) as f64))
-        .collect();
+    let x: Vec<_> =
+        (0..n).map(|k| vector(0.5 * (k % 5) as f64, 0.0, 0.5 * (k / 5) as f64)).collect();
     let y = state(&x, &vec![ZERO; n]);
     let sheet = |constraints: &[Constraint]| {
         let mut network = network(&vec![0.5; n], constraints);
@@ -335,10 +265,7 @@ fn a_sheet_hangs_from_points_as_from_pins() {
         network.add(sheet).unwrap();
         network
     };
-    let point = |particle: usize| Constraint::Point {
-        particle,
-        position: x[particle],
-    };
+    let point = |particle: usize| Constraint::Point { particle, position: x[particle] };
     let pointed = sheet(&[point(0), point(4)]);
     let mut pinned = sheet(&[]);
     for i in [0, 4] {

@@ -48,9 +48,7 @@ pub fn rods_are_held(network: &Network, [x, v, a]: [&[f64]; 3], most: f64) {
     let n = network.particles();
     let at = |values: &[f64], i: usize| vector(values[i], values[n + i], values[2 * n + i]);
     for constraint in network.constraints() {
-        let Constraint::Rod { i, j, length } = *constraint else {
-            panic!("a rod")
-        };
+        let Constraint::Rod { i, j, length } = *constraint else { panic!("a rod") };
         let [x, v, a] = [x, v, a].map(|values| at(values, i) - at(values, j));
         let r = x.norm();
         let (c, speed) = (r - length, x.dot(&v) / r);
@@ -61,12 +59,7 @@ pub fn rods_are_held(network: &Network, [x, v, a]: [&[f64]; 3], most: f64) {
 }
 
 pub fn wire() -> Constraint {
-    Constraint::Circle {
-        particle: 0,
-        center: ZERO,
-        normal: vector(0.0, 0.0, 2.0),
-        radius: 1.0,
-    }
+    Constraint::Circle { particle: 0, center: ZERO, normal: vector(0.0, 0.0, 2.0), radius: 1.0 }
 }
 
 /// State y of particles at positions x (m) with velocities v (m/s).
@@ -123,9 +116,7 @@ pub fn chain(rods: usize) -> (Network, Vec<f64>) {
     let constraints: Vec<_> = (0..rods).map(rod).collect();
     let mut network = network(&vec![0.2; rods + 1], &constraints);
     network.pin(0, Path::Still(ZERO)).unwrap();
-    let x: Vec<_> = (0..=rods)
-        .map(|i| vector(0.5 * i as f64, 0.0, 0.0))
-        .collect();
+    let x: Vec<_> = (0..=rods).map(|i| vector(0.5 * i as f64, 0.0, 0.0)).collect();
     let v = vec![ZERO; rods + 1];
     (network, state(&x, &v))
 }
@@ -133,12 +124,7 @@ pub fn chain(rods: usize) -> (Network, Vec<f64>) {
 /// Rods that hang from a swinging pin, with drag and a spring of this damping (N s/m).
 pub fn driven(damping: f64) -> (Network, Vec<f64>) {
     let mut network = network(&[1.0, 0.7, 1.3], &[rod(0, 1, 0.8), rod(2, 1, 1.0)]);
-    let path = Path::Sine {
-        center: ZERO,
-        amplitude: vector(0.3, 0.0, 0.2),
-        rate: 2.0,
-        phase: 0.4,
-    };
+    let path = Path::Sine { center: ZERO, amplitude: vector(0.3, 0.0, 0.2), rate: 2.0, phase: 0.4 };
     network.pin(0, path).unwrap();
     network.set_drag(0.8).unwrap();
     let law = SpringLaw::new(20.0, 0.8, damping).unwrap();

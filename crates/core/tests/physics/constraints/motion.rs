@@ -26,17 +26,12 @@ fn beads_and_rods_swing_as_pendulums_do() {
         let quarter = 0.25 * period(G.sqrt(), FRAC_PI_2);
         let after = |quarters: u64| {
             let h = quarter / 1000.0;
-            of(
-                &integrate(&network, method("rk4"), &start, h, 1000 * quarters),
-                i,
-            )
+            of(&integrate(&network, method("rk4"), &start, h, 1000 * quarters), i)
         };
         let lowest = [vector(0.0, -1.0, 0.0), vector(-(2.0 * G).sqrt(), 0.0, 0.0)];
-        for (quarters, [x, v]) in [
-            (1, lowest),
-            (2, [vector(-1.0, 0.0, 0.0), ZERO]),
-            (4, [vector(1.0, 0.0, 0.0), ZERO]),
-        ] {
+        for (quarters, [x, v]) in
+            [(1, lowest), (2, [vector(-1.0, 0.0, 0.0), ZERO]), (4, [vector(1.0, 0.0, 0.0), ZERO])]
+        {
             let [found, speed] = after(quarters);
             assert!((found - x).norm() < 1e-9, "{quarters}: {found}");
             assert!((speed - v).norm() < 1e-9, "{quarters}: {speed}");
@@ -47,11 +42,7 @@ fn beads_and_rods_swing_as_pendulums_do() {
 #[test]
 fn a_bead_slides_down_a_straight_wire() {
     let direction = vector(3.0, -4.0, 12.0);
-    let line = Constraint::Line {
-        particle: 0,
-        point: vector(1.0, 2.0, 3.0),
-        direction,
-    };
+    let line = Constraint::Line { particle: 0, point: vector(1.0, 2.0, 3.0), direction };
     let (network, x) = (network(&[2.0], &[line]), vector(1.0, 2.0, 3.0));
     let (off, change, y) = watch(&network, &state(&[x], &[ZERO]), "rk4", 1e-3, 10_000);
     let u = direction / 13.0;
@@ -63,11 +54,7 @@ fn a_bead_slides_down_a_straight_wire() {
 
 #[test]
 fn a_spherical_pendulum_keeps_what_it_turns_with() {
-    let sphere = Constraint::Sphere {
-        particle: 0,
-        center: ZERO,
-        radius: 2.0,
-    };
+    let sphere = Constraint::Sphere { particle: 0, center: ZERO, radius: 2.0 };
     let network = network(&[1.5], &[sphere]);
     let y = state(&[vector(2.0, 0.0, 0.0)], &[vector(0.0, -1.0, 3.0)]);
     let (off, change, end) = watch(&network, &y, "rk4", 1e-3, 60_000);
@@ -100,10 +87,7 @@ fn every_method_keeps_its_order() {
     for damping in [0.5, 0.0] {
         let (network, y0) = driven(damping);
         let exact = integrate(&network, method("dop853"), &y0, 1.0 / 512.0, 512);
-        for m in integrators::METHODS
-            .iter()
-            .filter(|m| m.check(&network).is_ok())
-        {
+        for m in integrators::METHODS.iter().filter(|m| m.check(&network).is_ok()) {
             let (steps, slack) = match m.order {
                 8.. => (20, 0.6),
                 6.. => (20, 0.9),
@@ -193,16 +177,8 @@ fn what_holds_does_no_work() {
         normal: vector(1.0, 1.0, 1.0),
         radius: 3.0f64.sqrt() * 2f64.sqrt(),
     };
-    let sphere = Constraint::Sphere {
-        particle: 0,
-        center: ZERO,
-        radius: 6f64.sqrt(),
-    };
-    let line = Constraint::Line {
-        particle: 0,
-        point: ZERO,
-        direction: vector(1.0, 1.0, -2.0),
-    };
+    let sphere = Constraint::Sphere { particle: 0, center: ZERO, radius: 6f64.sqrt() };
+    let line = Constraint::Line { particle: 0, point: ZERO, direction: vector(1.0, 1.0, -2.0) };
     let x = vector(1.0, 1.0, -2.0);
     let around = vector(1.0, 1.0, 1.0).cross(&x);
     for (constraint, v) in [(circle, around), (sphere, x.cross(&speed)), (line, x)] {

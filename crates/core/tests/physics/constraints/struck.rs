@@ -22,8 +22,7 @@ fn all() -> Vec<(&'static str, Control)> {
 fn run(scene: &str, (name, control): (&str, Control), t: f64) -> Simulation {
     let method = integrators::find(name).unwrap();
     let mut run = Simulation::new(described(scene), method, control).unwrap();
-    run.advance_to(t)
-        .unwrap_or_else(|why| panic!("{name}: {why}"));
+    run.advance_to(t).unwrap_or_else(|why| panic!("{name}: {why}"));
     assert_eq!(run.gained(), None, "{name}");
     run
 }
@@ -95,10 +94,7 @@ fn flown(v: [Vector3<f64>; 2], low: Vector3<f64>, t: f64) -> [Vector3<f64>; 2] {
     let turning = v[1] - v[0];
     let angle = turning.norm() * t;
     let turned = ALONG * angle.cos() + turning.normalize() * angle.sin();
-    [
-        middle - turned * (MASSES[1] / whole),
-        middle + turned * (MASSES[0] / whole),
-    ]
+    [middle - turned * (MASSES[1] / whole), middle + turned * (MASSES[0] / whole)]
 }
 
 #[test]
@@ -127,11 +123,7 @@ fn a_body_on_a_rod_rebounds_like_a_particle() {
     let fall = (2.0 * HEIGHT / G).sqrt();
     let after = struck(vector(0.0, -G * fall, 0.0), 1.0, 0.0);
     for name in ["rk4", "verlet"] {
-        let run = run(
-            &rod(1.0, 0.0, true),
-            (name, Control::Step(2e-4)),
-            fall + 0.02,
-        );
+        let run = run(&rod(1.0, 0.0, true), (name, Control::Step(2e-4)), fall + 0.02);
         let (n, y) = (run.model().particles(), run.state());
         // The rod turns by as much as it does without gravity.
         let expected = flown(after, vector(0.0, 0.1, 0.0), 0.02);
@@ -201,10 +193,7 @@ fn chains_on_an_elastic_floor_gain_no_energy() {
                 let end = run.advance_to(0.1 * f64::from(k));
                 end.unwrap_or_else(|why| panic!("{seed} by {name}: {why}"));
                 let gained = run.energy().unwrap().total() - begun;
-                assert!(
-                    gained < 0.01 * begun,
-                    "{seed} by {name}: {gained} of {begun} J"
-                );
+                assert!(gained < 0.01 * begun, "{seed} by {name}: {gained} of {begun} J");
             }
         }
     }
@@ -247,13 +236,9 @@ fn speeds<const N: usize>(run: &Simulation, centers: [usize; N]) -> [Vector3<f64
 /// rebounds, and the upper one, which no rope can push, does not notice.
 #[test]
 fn a_taut_rope_pushes_nothing() {
-    for (angle, friction, gravity) in [
-        (0.0_f64, 0.0, 0.0),
-        (0.0, 0.0, G),
-        (0.7, 0.0, 0.0),
-        (0.7, 0.5, 0.0),
-        (1.4, 0.5, 0.0),
-    ] {
+    for (angle, friction, gravity) in
+        [(0.0_f64, 0.0, 0.0), (0.0, 0.0, G), (0.7, 0.0, 0.0), (0.7, 0.5, 0.0), (1.4, 0.5, 0.0)]
+    {
         for is_body in [false, true] {
             let low = if is_body { 0.35 } else { 0.3 };
             let [x, y] = [angle.sin(), low + angle.cos()];
@@ -333,10 +318,7 @@ fn rope_rod_and_friction_are_struck_together() {
         [[constraint]]
         rod = [1, 2]";
     let fixed = ["rk4", "verlet"].map(|name| (name, Control::Step(1e-4)));
-    for method in fixed
-        .into_iter()
-        .chain([("dopri5", Control::Tolerance(1e-8))])
-    {
+    for method in fixed.into_iter().chain([("dopri5", Control::Tolerance(1e-8))]) {
         let run = run(scene, method, 0.0011);
         let found = speeds(&run, [1, 2]);
         let expected = [vector(-0.0008, -0.2745, 0.0), vector(-1.1659, 3.0024, 0.0)];
@@ -375,10 +357,7 @@ fn the_limit_of_a_slider_passes_impulses_one_way() {
             let run = run(&scene, (name, control), 0.15);
             let found = speeds(&run, [0, 9]).map(|v| v.y);
             for (found, after) in found.into_iter().zip(after) {
-                assert!(
-                    (found - after).abs() < 0.01,
-                    "{limits} {control:?}: {found}"
-                );
+                assert!((found - after).abs() < 0.01, "{limits} {control:?}: {found}");
             }
         }
     }
@@ -443,11 +422,7 @@ fn rods_rebound_alike_from_moving_boxes() {
     for method in all() {
         for body in [false, true] {
             let still = seen(body, Vector3::zeros(), method);
-            for w in [
-                vector(0.1, 0.0, 0.0),
-                vector(0.0, 0.01, 0.0),
-                vector(0.3, 0.5, -0.2),
-            ] {
+            for w in [vector(0.1, 0.0, 0.0), vector(0.0, 0.01, 0.0), vector(0.3, 0.5, -0.2)] {
                 let apart = seen(body, w, method);
                 let apart = (0..2).map(|i| (apart[i] - still[i]).norm());
                 let apart = apart.fold(0.0, f64::max);

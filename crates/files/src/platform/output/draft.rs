@@ -35,11 +35,7 @@ type Rename = fn(NamedTempFile, PathBuf) -> Result<File, tempfile::PersistError>
 /// Target of the bytes of a draft.
 enum Sink {
     /// A temporary file, and the path to which it will be renamed.
-    Beside {
-        file: NamedTempFile,
-        target: PathBuf,
-        _temporary: Temporary,
-    },
+    Beside { file: NamedTempFile, target: PathBuf, _temporary: Temporary },
     /// The path itself.
     Direct(File),
 }
@@ -49,10 +45,7 @@ impl Draft {
     pub fn new(path: &Path) -> Result<Self, Failure> {
         refuse_read(path)?;
         let sink = Sink::new(path).map_err(|e| not_written(path, &e))?;
-        Ok(Self {
-            path: path.into(),
-            file: BufWriter::new(sink),
-        })
+        Ok(Self { path: path.into(), file: BufWriter::new(sink) })
     }
 
     /// Returns the path as it was given.
@@ -91,10 +84,7 @@ impl Draft {
 
     fn rename_by(self, rename: Rename) -> Result<bool, Failure> {
         let sink = self.file.into_inner();
-        match sink
-            .map_err(io::IntoInnerError::into_error)
-            .and_then(|sink| sink.place(rename))
-        {
+        match sink.map_err(io::IntoInnerError::into_error).and_then(|sink| sink.place(rename)) {
             Ok(()) => Ok(true),
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => Ok(false),
             Err(e) => Err(not_written(&self.path, &e)),
@@ -131,11 +121,7 @@ impl Sink {
         let make = || beside(&target, there.map(|there| there.permissions()));
         let (file, temporary) =
             interrupt::temporary(make, |file| Cleanup::File(file.path().into()))?;
-        Ok(Self::Beside {
-            file,
-            target,
-            _temporary: temporary,
-        })
+        Ok(Self::Beside { file, target, _temporary: temporary })
     }
 
     /// Renames the complete file to its path, and syncs file and folder, so that it stays even if
@@ -247,10 +233,7 @@ struct Files {
     written: Vec<PathBuf>,
 }
 
-static FILES: Mutex<Files> = Mutex::new(Files {
-    read: vec![],
-    written: vec![],
-});
+static FILES: Mutex<Files> = Mutex::new(Files { read: vec![], written: vec![] });
 
 fn files() -> MutexGuard<'static, Files> {
     FILES.lock().unwrap_or_else(PoisonError::into_inner)

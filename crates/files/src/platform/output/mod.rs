@@ -24,10 +24,7 @@ const MAX_NAMES: usize = 9999;
 pub fn check(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
     check_ending(path, extensions)?;
     if path.is_dir() {
-        return Err(Failure::run(format!(
-            "{}: this is a folder, not a file",
-            path.display()
-        )));
+        return Err(Failure::run(format!("{}: this is a folder, not a file", path.display())));
     }
     place::check(path)?;
     draft::claim(path)
@@ -51,8 +48,7 @@ pub fn check_ending(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
 
 /// Returns whether the path has this extension, in lower or upper case.
 pub fn ends_in(path: &Path, extension: &str) -> bool {
-    path.extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case(extension))
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
 /// Returns the first of the names a3-SCENE-1, a3-SCENE-2, ... with this ending that is free in the
@@ -64,9 +60,7 @@ pub fn free_name(scene: &str, ending: &str) -> Result<PathBuf, Failure> {
         .find(|name| fs::symlink_metadata(name.replace("####", "0001")).is_err())
         .map(PathBuf::from)
         .ok_or_else(|| {
-            Failure::run(format!(
-                "there are {MAX_NAMES} files a3-{scene}-*{ending} already"
-            ))
+            Failure::run(format!("there are {MAX_NAMES} files a3-{scene}-*{ending} already"))
         })
 }
 
@@ -92,9 +86,7 @@ pub fn write_new(
             return Ok(path);
         }
     }
-    Err(Failure::run(format!(
-        "there are {MAX_NAMES} files a3-{scene}-*.{extension} already"
-    )))
+    Err(Failure::run(format!("there are {MAX_NAMES} files a3-{scene}-*.{extension} already")))
 }
 
 /// Writes `bytes` to `path`.

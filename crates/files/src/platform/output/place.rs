@@ -84,11 +84,7 @@ pub fn writable(there: &Metadata) -> io::Result<()> {
 }
 
 fn no_folder(path: &Path, folder: &Path) -> Failure {
-    Failure::run(format!(
-        "{}: there is no folder {}",
-        path.display(),
-        folder.display()
-    ))
+    Failure::run(format!("{}: there is no folder {}", path.display(), folder.display()))
 }
 
 /// Returns the failure of a write.
@@ -120,9 +116,7 @@ pub fn lock(path: &Path) -> Result<Option<File>, Failure> {
         }
         if waited > WAITS[0] && !is_said {
             is_said = true;
-            warn(&format!(
-                "{place}: waits for another process that has locked its folder"
-            ));
+            warn(&format!("{place}: waits for another process that has locked its folder"));
         }
         std::thread::sleep(Duration::from_millis(20));
     }

@@ -152,8 +152,7 @@ pub(super) fn compressed(extension: &str) -> String {
 
 /// Returns item k of a list of the document.
 pub(super) fn item<'a, T>(list: &'a [T], k: usize, kind: &str) -> Result<&'a T, String> {
-    list.get(k)
-        .ok_or_else(|| format!("there is no {kind} {k}: the file has {}", list.len()))
+    list.get(k).ok_or_else(|| format!("there is no {kind} {k}: the file has {}", list.len()))
 }
 
 impl Node {
@@ -215,10 +214,7 @@ impl Accessor {
 
     /// Returns the accessor of its first `count` elements.
     pub fn first(&self, count: usize) -> Self {
-        Self {
-            count,
-            ..self.clone()
-        }
+        Self { count, ..self.clone() }
     }
 }
 
@@ -295,10 +291,7 @@ impl Buffers<'_> {
             let wide = self::size(indices.component_type.unwrap_or(0))?;
             let places = self.packed(indices.buffer_view, indices.byte_offset, some, wide)?;
             let values = self.packed(values.buffer_view, values.byte_offset, some, size)?;
-            for (k, value) in whole(&places, wide)
-                .into_iter()
-                .zip(values.chunks_exact(size))
-            {
+            for (k, value) in whole(&places, wide).into_iter().zip(values.chunks_exact(size)) {
                 let place = bytes.chunks_exact_mut(size).nth(k as usize);
                 let place = place.ok_or_else(|| format!("it replaces element {k} of {count}"))?;
                 place.copy_from_slice(value);
@@ -339,15 +332,9 @@ fn number(component_type: u32) -> Result<Number, String> {
     Ok(match component_type {
         I8 => (1, 127.0, |it| f32::from(it[0].cast_signed())),
         U8 => (1, 255.0, |it| f32::from(it[0])),
-        I16 => (2, 32767.0, |it| {
-            f32::from(i16::from_le_bytes([it[0], it[1]]))
-        }),
-        U16 => (2, 65535.0, |it| {
-            f32::from(u16::from_le_bytes([it[0], it[1]]))
-        }),
-        F32 => (4, 0.0, |it| {
-            f32::from_le_bytes([it[0], it[1], it[2], it[3]])
-        }),
+        I16 => (2, 32767.0, |it| f32::from(i16::from_le_bytes([it[0], it[1]]))),
+        U16 => (2, 65535.0, |it| f32::from(u16::from_le_bytes([it[0], it[1]]))),
+        F32 => (4, 0.0, |it| f32::from_le_bytes([it[0], it[1], it[2], it[3]])),
         other => {
             let why = "which those of points have not";
             refuse!("its numbers have the type {other}, {why}");
@@ -361,9 +348,7 @@ fn size(component_type: u32) -> Result<usize, String> {
         U8 => Ok(1),
         U16 => Ok(2),
         U32 => Ok(4),
-        other => Err(format!(
-            "its numbers have the type {other}, which indices have not"
-        )),
+        other => Err(format!("its numbers have the type {other}, which indices have not")),
     }
 }
 

@@ -40,10 +40,7 @@ pub(super) fn read(
         }
         refuse!("it needs the extension {extension}, which is not read");
     }
-    let mut buffers = Buffers {
-        buffers: vec![],
-        views: &document.buffer_views,
-    };
+    let mut buffers = Buffers { buffers: vec![], views: &document.buffer_views };
     for buffer in &document.buffers {
         let Some(Text(uri)) = &buffer.uri else {
             let missing = || match document.compression() {
@@ -84,13 +81,8 @@ fn named(
     file: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<Vec<u8>, String> {
     let name = unescaped(uri);
-    let bytes = file(&name).or_else(|why| {
-        if name == uri {
-            Err(why)
-        } else {
-            file(uri).map_err(|_| why)
-        }
-    });
+    let bytes =
+        file(&name).or_else(|why| if name == uri { Err(why) } else { file(uri).map_err(|_| why) });
     bytes.map_err(|why| format!("{name}: {why}"))
 }
 

@@ -193,11 +193,7 @@ pub(super) enum Carrier {
 
 impl<'a> Skins<'a> {
     pub fn new(document: &'a Document<'a>) -> Self {
-        Self {
-            document,
-            nodes: None,
-            joints: BTreeMap::new(),
-        }
+        Self { document, nodes: None, joints: BTreeMap::new() }
     }
 
     /// Reads the joints and weights by which a skin moves `count` points with these attributes.
@@ -297,10 +293,6 @@ impl Carrier {
         }
         // Weights are rounded, so their sum is not exactly 1. A point without weights stays where
         // it is.
-        if sum > 0.0 {
-            matrix / sum
-        } else {
-            Matrix4::identity()
-        }
+        if sum > 0.0 { matrix / sum } else { Matrix4::identity() }
     }
 }

@@ -90,10 +90,7 @@ pub struct Throw {
 
 impl Default for Throw {
     fn default() -> Self {
-        Self {
-            mass: 1.0,
-            speed: 1.0,
-        }
+        Self { mass: 1.0, speed: 1.0 }
     }
 }
 
@@ -162,9 +159,7 @@ fn thrown(session: &mut Session, aim: &Aim, how: Throw) -> Result<String, String
         return done.map(|name| format!("A {name} flies."));
     }
     let done = thrown_from(session, aim, how, first).inspect_err(|_| undo(session, false))?;
-    Ok(format!(
-        "A {done} flies. The surfaces of the scene came apart for it, and touch now."
-    ))
+    Ok(format!("A {done} flies. The surfaces of the scene came apart for it, and touch now."))
 }
 
 /// Throws a body from a place, by its number in rows beside the eye.
@@ -251,12 +246,7 @@ fn link(session: &Session, [i, j]: [usize; 2]) -> Result<Planned, String> {
     let longest = lengths.iter().copied().fold(0.0, f64::max);
     let constraint = |rod, rope, length| {
         let length = Some(length);
-        Edit::AddConstraint(ConstraintSpec {
-            rod,
-            rope,
-            length,
-            ..ConstraintSpec::default()
-        })
+        Edit::AddConstraint(ConstraintSpec { rod, rope, length, ..ConstraintSpec::default() })
     };
     let (name, add) = match editor.tool {
         Tool::Spring => {
@@ -268,9 +258,7 @@ fn link(session: &Session, [i, j]: [usize; 2]) -> Result<Planned, String> {
         }
         Tool::Rope => ("rope", constraint(None, Some([i, j]), longest)),
         _ => {
-            let other = lengths
-                .iter()
-                .find(|it| (*it - now).abs() > ROD_TOLERANCE * now);
+            let other = lengths.iter().find(|it| (*it - now).abs() > ROD_TOLERANCE * now);
             if let Some(other) = other {
                 let [now, other] = [now, *other].map(|length| short(length, 3));
                 let elsewhere = match session.runs.panes.len() {

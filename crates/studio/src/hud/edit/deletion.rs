@@ -8,10 +8,7 @@ use super::{Aim, click};
 use crate::session::panel;
 use crate::session::{Pick, RulerEnd, RunAction, Session, Tool, frames, session};
 
-const LINKAGE: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../../docs/scenes/linkage.toml"
-);
+const LINKAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/linkage.toml");
 
 /// Opens the linkage with the tools.
 fn linkage() -> Session {
@@ -91,9 +88,7 @@ fn plots_and_the_ruler_follow_what_they_show() {
     for (k, (pick, series)) in session.runs.panes[0].traces.iter().enumerate() {
         // No value jumps: each is still of the same body.
         let rows: Vec<_> = series.rows().collect();
-        let moves = rows
-            .windows(2)
-            .map(|it| (it[1].values[0] - it[0].values[0]).abs());
+        let moves = rows.windows(2).map(|it| (it[1].values[0] - it[0].values[0]).abs());
         assert!(rows.len() > 3 && moves.fold(0.0, f64::max) < 0.05, "{k}");
         assert_eq!(*pick, Pick::Body(k));
     }
@@ -111,15 +106,7 @@ fn a_plot_of_a_spring_ends_with_it() {
     let mut session = session(&["r", "0.002", "--scene", "chain"]);
     session.act(RunAction::Edit, 0);
     session.panel.editor.tool = Tool::Delete;
-    let spring = session
-        .runs
-        .first()
-        .model()
-        .network()
-        .unwrap()
-        .all_springs()
-        .next()
-        .unwrap();
+    let spring = session.runs.first().model().network().unwrap().all_springs().next().unwrap();
     for (i, j) in [(spring.i, spring.j), (spring.i + 2, spring.j + 2)] {
         let pane = &mut session.runs.panes[0];
         pane.traces.toggle(Pick::Spring(i, j), &pane.simulation);

@@ -51,8 +51,7 @@ pub fn show(ctx: &Context, session: &Session) {
     fixed(ctx, Id::unique("tools"), place.min, |ui| {
         ui.allocate_rect(place, Sense::click_and_drag());
         let edge = Stroke::new(1.0, FAINT.gamma_multiply(0.35));
-        ui.painter()
-            .rect(place, 9.0, SHEET, edge, StrokeKind::Inside);
+        ui.painter().rect(place, 9.0, SHEET, edge, StrokeKind::Inside);
         let inside = place.shrink(PAD);
         let cell = |k: usize, of: usize| vec2((k % of) as f32, (k / of) as f32);
         for k in 0..count {

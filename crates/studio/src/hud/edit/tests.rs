@@ -58,10 +58,7 @@ fn use_tool(session: &mut Session, tool: Tool, aim: &Aim) -> String {
 }
 
 fn delete(session: &mut Session, target: Target) -> String {
-    let aim = Aim {
-        target: Some(target),
-        ..at([0.0; 3])
-    };
+    let aim = Aim { target: Some(target), ..at([0.0; 3]) };
     use_tool(session, Tool::Delete, &aim)
 }
 
@@ -115,10 +112,7 @@ fn every_edit_keeps_the_rest_and_can_be_undone() {
     frames(&mut session, 0.2);
     let own = session.scenes.shown.source.description.clone();
     let n = session.runs.first().particles();
-    let near = |a: [f64; 3]| Aim {
-        normal: Some(Vector3::y()),
-        ..at(a)
-    };
+    let near = |a: [f64; 3]| Aim { normal: Some(Vector3::y()), ..at(a) };
     let joined = |tool, ends| {
         move |session: &mut Session| {
             session.panel.editor.tool = tool;
@@ -128,10 +122,7 @@ fn every_edit_keeps_the_rest_and_can_be_undone() {
     let gone = |target| move |session: &mut Session| drop(delete(session, target));
     let disjoin = |ends| {
         move |session: &mut Session| {
-            let aim = Aim {
-                link: Some(ends),
-                ..at([0.0; 3])
-            };
+            let aim = Aim { link: Some(ends), ..at([0.0; 3]) };
             use_tool(session, Tool::Delete, &aim);
         }
     };
@@ -233,10 +224,7 @@ fn what_is_impossible_is_refused_and_changes_nothing() {
     ] {
         let mut session = crate::session::session(&["r", "0.001", "--scene", scene]);
         session.act(RunAction::Edit, 0);
-        let aim = Aim {
-            target: Some(Target::Particle(0)),
-            ..at([0.0; 3])
-        };
+        let aim = Aim { target: Some(Target::Particle(0)), ..at([0.0; 3]) };
         let said = use_tool(&mut session, tool, &aim);
         assert!(said.contains(why) || said.contains("no masses"), "{said}");
     }
@@ -249,11 +237,7 @@ fn an_edited_scene_is_written_and_reset() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = open(folder.path(), MANY);
     frames(&mut session, 0.2);
-    panel::tune(
-        &mut session,
-        &[("without drag".into(), 1.0), ("gravity".into(), 5.0)],
-    )
-    .unwrap();
+    panel::tune(&mut session, &[("without drag".into(), 1.0), ("gravity".into(), 5.0)]).unwrap();
     use_tool(&mut session, Tool::ThrowBall, &at([0.0, 1.5, 0.0]));
     delete(&mut session, Target::Particle(13));
     use_tool(&mut session, Tool::Particle, &at([3.0, 3.0, 0.0]));
@@ -323,11 +307,8 @@ fn random_edits_can_all_be_undone() {
             let [x, y, z] = [10, 4, 6].map(|range| next(10 * range) as f64 / 10.0);
             let ends = [next(n), next(n)];
             let target = Some(Target::Particle(next(n))).filter(|_| next(3) > 0);
-            let aim = Aim {
-                target,
-                link: Some(ends).filter(|_| next(3) == 0),
-                ..at([x - 5.0, y, z])
-            };
+            let aim =
+                Aim { target, link: Some(ends).filter(|_| next(3) == 0), ..at([x - 5.0, y, z]) };
             let (tool, ..) = Tool::ALL[next(Tool::ALL.len())];
             let before = session.scenes.shown.source.description.clone();
             if tool.joins() && next(4) > 0 {
@@ -399,10 +380,7 @@ fn a_dragged_obstacle_moves_on_about_its_new_place() {
         }
         assert!((path(0.0) - target).norm() < 1e-9 && passed < 0.2);
         panel::undo(&mut session, false);
-        assert!(
-            (place(&session, k, time - now - passed) - from).norm() < 1e-9,
-            "{k}"
-        );
+        assert!((place(&session, k, time - now - passed) - from).norm() < 1e-9, "{k}");
     }
 }
 
@@ -412,11 +390,7 @@ fn throw_two(session: &mut Session) -> [String; 2] {
         let camera = &session.view.camera;
         let [eye, point] =
             [camera.eye(), camera.target()].map(|it| Vector3::from(it.coords).cast::<f64>());
-        let aim = Aim {
-            eye,
-            point,
-            ..at([0.0; 3])
-        };
+        let aim = Aim { eye, point, ..at([0.0; 3]) };
         throw(session, &aim, Throw { mass, speed: 1.5 });
         session.readings.message.clone().unwrap()
     })
@@ -432,9 +406,7 @@ fn check_floating(session: &Session) {
     };
     let (n, law) = (run.particles(), fluid.law());
     for (k, body) in network.bodies().iter().rev().take(2).enumerate() {
-        let wet = body
-            .points()
-            .filter(|i| fluid.particles().contains(&(*i as u32)));
+        let wet = body.points().filter(|i| fluid.particles().contains(&(*i as u32)));
         let displaced = wet.count() as f64 * law.mass();
         assert!(displaced > 0.0);
         assert_eq!(network.masses()[body.center()] > displaced, k == 0);

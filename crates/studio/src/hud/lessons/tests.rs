@@ -157,10 +157,7 @@ fn every_step_is_drawn_in_windows_and_on_phones() {
     for size in [[1000.0, 560.0], [1280.0, 800.0], [390.0, 844.0]] {
         session.readings.touch = size[0] < 500.0;
         let (said, _) = draw(&session, size, None);
-        assert!(
-            ALL.iter().all(|lesson| said.contains(&lesson.title)),
-            "{said}"
-        );
+        assert!(ALL.iter().all(|lesson| said.contains(&lesson.title)), "{said}");
         let [right, below] = PANE.taken(size);
         let picture = [size[0] - right, size[1] - below - BAR];
         assert!(picture.iter().all(|side| *side >= 390.0), "{picture:?}");
@@ -170,10 +167,7 @@ fn every_step_is_drawn_in_windows_and_on_phones() {
                 (lessons.chosen, lessons.step) = (lesson, Some(step));
                 lessons.reveal();
                 let (said, _) = draw(&session, size, None);
-                assert!(
-                    said.contains("Run again") && said.contains("Next"),
-                    "{said}"
-                );
+                assert!(said.contains("Run again") && said.contains("Next"), "{said}");
                 // On a phone, the reply is below the visible part of the pane, until one scrolls.
                 let replied = said.contains("That is right.");
                 assert!(replied || size[1] > 2.0 * size[0], "{said}");
@@ -196,19 +190,12 @@ fn a_lesson_is_gone_through_by_clicks() {
         let request = request.unwrap_or_else(|| panic!("no {words} in {said}"));
         assert_eq!(apply(&mut session, request, 0), changes, "{request:?}");
         let lessons = &session.panel.lessons;
-        (
-            session.runs.panes.len(),
-            session.runs.first().method().name,
-            lessons.given(),
-        )
+        (session.runs.panes.len(), session.runs.first().method().name, lessons.given())
     };
     assert_eq!(click("Euler spirals", true).0, 2);
     assert_eq!(click("It stays on", false).2.right, Some(false));
     assert!(click("It spirals out", false).2.done);
-    assert_eq!(
-        (click("Next", true).0, click("Run again", true).1),
-        (1, "euler")
-    );
+    assert_eq!((click("Next", true).0, click("Run again", true).1), (1, "euler"));
     click("your answer", false);
     assert!(session.panel.lessons.typing && session.pulled && session.panel.pane == 0);
     let mut answer = |begin: &[TextKey], number: &str| {
@@ -217,12 +204,7 @@ fn a_lesson_is_gone_through_by_clicks() {
             apply(&mut session, again, 0);
         }
         let letters = number.chars().map(TextKey::Type);
-        for key in begin
-            .iter()
-            .copied()
-            .chain(letters)
-            .chain([TextKey::Accept])
-        {
+        for key in begin.iter().copied().chain(letters).chain([TextKey::Accept]) {
             assert!(is_typing(&session), "{number}");
             apply(&mut session, key, 0);
         }
@@ -231,18 +213,10 @@ fn a_lesson_is_gone_through_by_clicks() {
     };
     // What is no number is no wrong answer either.
     let (given, said) = answer(&[], "1.51.65");
-    assert!(
-        given.wrong == 0 && said.contains("1.51.65 is no number."),
-        "{said}"
-    );
+    assert!(given.wrong == 0 && said.contains("1.51.65 is no number."), "{said}");
     // An answer that is tried again replaces the one before, and so does one after Ctrl+A.
     assert_eq!(answer(&[], "2").0.typed, "2");
-    assert_eq!(
-        answer(&[TextKey::Type('7'), TextKey::MarkAll], "1,65")
-            .0
-            .typed,
-        "1.65"
-    );
+    assert_eq!(answer(&[TextKey::Type('7'), TextKey::MarkAll], "1,65").0.typed, "1.65");
     assert!(session.panel.lessons.given().done && !session.panel.lessons.typing);
     assert!(!is_typing(&session));
     // The scenes of before are still there, and so is the progress.

@@ -41,16 +41,7 @@ const fn curve(
     of: fn(&Sample) -> Option<f64>,
 ) -> Curve {
     let marker = Marker::Cross(0.0);
-    Curve {
-        name,
-        column,
-        style: CurveStyle {
-            colour,
-            dash,
-            marker,
-        },
-        of,
-    }
+    Curve { name, column, style: CurveStyle { colour, dash, marker }, of }
 }
 
 static PLOTS: &[Plot] = &[
@@ -63,12 +54,9 @@ static PLOTS: &[Plot] = &[
             curve("elastic", "elastic energy (J)", (AMBER, &[1.1, 1.7]), |s| {
                 Some(s.values.energy?.elastic)
             }),
-            curve(
-                "gravity",
-                "gravitational energy (J)",
-                (VIOLET, &[5.0, 1.7, 1.1, 1.7]),
-                |s| Some(s.values.energy?.gravitational),
-            ),
+            curve("gravity", "gravitational energy (J)", (VIOLET, &[5.0, 1.7, 1.1, 1.7]), |s| {
+                Some(s.values.energy?.gravitational)
+            }),
             curve("total", "total energy (J)", ("#181c28", &[]), |s| {
                 Some(s.values.energy?.total())
             }),
@@ -76,27 +64,19 @@ static PLOTS: &[Plot] = &[
     },
     Plot {
         title: "largest stretch",
-        curves: &[curve("", "largest stretch", (AMBER, &[]), |s| {
-            s.values.stretch
-        })],
+        curves: &[curve("", "largest stretch", (AMBER, &[]), |s| s.values.stretch)],
     },
     Plot {
         title: "computing (ms per simulated s)",
-        curves: &[curve(
-            "",
-            "computing (ms per simulated s)",
-            (TEAL, &[]),
-            |s| Some(s.values.cost?[1]),
-        )],
+        curves: &[curve("", "computing (ms per simulated s)", (TEAL, &[]), |s| {
+            Some(s.values.cost?[1])
+        })],
     },
     Plot {
         title: "evaluations per simulated s",
-        curves: &[curve(
-            "",
-            "evaluations per simulated s",
-            (VIOLET, &[]),
-            |s| Some(s.values.cost?[0]),
-        )],
+        curves: &[curve("", "evaluations per simulated s", (VIOLET, &[]), |s| {
+            Some(s.values.cost?[0])
+        })],
     },
 ];
 
@@ -135,10 +115,7 @@ pub fn draw(painter: &Painter, room: Rect, samples: &Samples, pointer: Option<Po
         let panels: Vec<_> = panels.collect();
         let highest = MAX_HEIGHT_PER_WIDTH * room.width() * panels.len() as f32;
         let sheet = [room.width(), room.height().min(highest)].map(f64::from);
-        let chart = LineChart {
-            panels,
-            ..LineChart::default()
-        };
+        let chart = LineChart { panels, ..LineChart::default() };
         chart.draw_compact(sheet, SIZE, true)
     };
     let mut figure = draw(None);
@@ -198,22 +175,12 @@ mod tests {
         let text = String::from_utf8(super::csv(&session.runs.panes).unwrap()).unwrap();
         let mut lines = text.lines();
         let heading = lines.next().unwrap();
-        assert!(
-            heading.starts_with("solver,time (s),kinetic energy (J),"),
-            "{heading}"
-        );
+        assert!(heading.starts_with("solver,time (s),kinetic energy (J),"), "{heading}");
         let rows: Vec<Vec<_>> = lines.map(|line| line.split(',').collect()).collect();
-        let samples: Vec<_> = session
-            .runs
-            .panes
-            .iter()
-            .map(|pane| pane.samples.iter().count())
-            .collect();
+        let samples: Vec<_> =
+            session.runs.panes.iter().map(|pane| pane.samples.iter().count()).collect();
         assert_eq!(rows.len(), samples.iter().sum::<usize>());
-        assert!(
-            rows.iter()
-                .all(|row| row.len() == heading.split(',').count())
-        );
+        assert!(rows.iter().all(|row| row.len() == heading.split(',').count()));
         let last = session.runs.panes[1].samples.iter().last().unwrap();
         let row = rows.last().unwrap();
         assert_eq!((row[0], row[1]), ("rk4", &*last.time.to_string()));

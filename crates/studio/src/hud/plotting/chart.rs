@@ -14,9 +14,7 @@ use crate::session::{Trigger, Variable};
 
 /// Colours of picks or, in a comparison, of panes, that every kind of colour vision tells apart
 /// (Okabe and Ito, Tol).
-const COLOURS: [&str; 6] = [
-    "#0072b2", "#d55e00", "#009e73", "#332288", "#cc79a7", "#000000",
-];
+const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#332288", "#cc79a7", "#000000"];
 /// Dashes of picks in a comparison, in widths of the line.
 const DASHES: [&[f64]; 6] = [
     &[],
@@ -69,9 +67,7 @@ fn axes(session: &Session) -> Vec<Axes> {
         return vec![plotting::axes(settings, &session.runs.panes).map(Some)];
     }
     let shown = Variable::all().filter(|it| settings.shown.contains(it) && has(session, *it));
-    shown
-        .map(|variable| [None, Some(Quantity::of_each(variable))])
-        .collect()
+    shown.map(|variable| [None, Some(Quantity::of_each(variable))]).collect()
 }
 
 /// Returns the time (s) at the end of the plots: the latest of any pane.
@@ -113,11 +109,7 @@ fn value_at(session: &Session, quantity: Quantity, [pane, pick]: [usize; 2], row
     let own = traces.as_slice().get(pick).map(|(own, _)| *own);
     let Some(of) = quantity.of.filter(|of| Some(*of) != own) else {
         let has = own.is_some_and(|own| quantity.variable.is_of(own.kind()));
-        return if has {
-            quantity.variable.of(row)
-        } else {
-            f64::NAN
-        };
+        return if has { quantity.variable.of(row) } else { f64::NAN };
     };
     let series = traces.find(|(other, _)| *other == of);
     let row = series.and_then(|(_, series)| series.at(row.time));
@@ -180,11 +172,7 @@ pub fn plotted(session: &Session, detail: usize) -> Plotted {
         panels: panels.collect(),
         foot: foot(session),
     };
-    Plotted {
-        chart,
-        axes: all_axes,
-        sources,
-    }
+    Plotted { chart, axes: all_axes, sources }
 }
 
 /// Returns the name of a curve.
@@ -280,11 +268,7 @@ const DETAIL: usize = 2000;
 pub fn write(session: &Session) -> Result<String, Failure> {
     let [table, picture] = [PlotFile::Table, PlotFile::Picture].map(|it| write_one(session, it));
     let (table, picture) = (table?, picture?);
-    Ok(format!(
-        "Wrote {} and {}.",
-        table.display(),
-        picture.display()
-    ))
+    Ok(format!("Wrote {} and {}.", table.display(), picture.display()))
 }
 
 /// Writes one file under the first free name, and returns its path. Fails as [`write`] does.
@@ -375,9 +359,7 @@ mod tests {
         let rows = session.runs.panes[0].traces.iter().as_slice()[0].1.rows();
         let y = rows.map(|row| row.values[1]);
         let extremes = |values: &mut dyn Iterator<Item = f64>| {
-            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], y| {
-                [a.min(y), b.max(y)]
-            })
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], y| [a.min(y), b.max(y)])
         };
         let right = extremes(&mut y.clone());
         let plotted = plotted(&session, 100);
@@ -387,11 +369,7 @@ mod tests {
         assert_eq!(extremes(&mut points().map(|point| point[1])), right);
         let count = points().count();
         assert!((100..202).contains(&count), "{count}");
-        assert!(
-            points()
-                .collect::<Vec<_>>()
-                .is_sorted_by(|a, b| a[0] < b[0])
-        );
+        assert!(points().collect::<Vec<_>>().is_sorted_by(|a, b| a[0] < b[0]));
     }
 
     #[test]
@@ -432,10 +410,7 @@ mod tests {
         let mut session = session(&["r", "0.005", "--scene", "double-pendulum"]);
         let rods = [Pick::Rod(0, 1), Pick::Rod(1, 2)];
         let begun = [PlotRequest::Toggle(rods[0]), PlotRequest::Toggle(rods[1])];
-        let axes = rods.map(|rod| Quantity {
-            of: Some(rod),
-            variable: Variable::Angle,
-        });
+        let axes = rods.map(|rod| Quantity { of: Some(rod), variable: Variable::Angle });
         let axes = [PlotRequest::Axis(0, axes[0]), PlotRequest::Axis(1, axes[1])];
         for request in begun.into_iter().chain([PlotRequest::Mode(Mode::Phase)]) {
             apply(&mut session, request, 0);
@@ -544,9 +519,6 @@ mod tests {
         assert_eq!(last, [run.position(1).y, run.position(1).norm() - 1.0]);
         apply(&mut session, PlotRequest::Axis(1, up), 0);
         let panel = &plotted(&session, 100).chart.panels[0];
-        assert_eq!(
-            (&*panel.y_label, panel.lines.len()),
-            ("elastic energy (J)", 1)
-        );
+        assert_eq!((&*panel.y_label, panel.lines.len()), ("elastic energy (J)", 1));
     }
 }

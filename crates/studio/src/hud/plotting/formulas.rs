@@ -159,11 +159,7 @@ pub fn show(ui: &mut Ui, room: Rect, session: &Session) -> f32 {
     let galley = ui.painter().layout_job(job);
     let height = galley.size().y.min(SHARE * room.height());
     let is_alone = room.height() - height < MIN_CHART;
-    let bottom = if is_alone {
-        room.bottom()
-    } else {
-        room.top() + height
-    };
+    let bottom = if is_alone { room.bottom() } else { room.top() + height };
     let place = room.with_max_y(bottom);
     ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
         ScrollArea::vertical()
@@ -189,9 +185,7 @@ mod tests {
             assert!(formula(METHODS, method.name).is_some(), "{}", method.name);
         }
         let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes");
-        let files = std::fs::read_dir(docs)
-            .unwrap()
-            .map(|it| it.unwrap().path());
+        let files = std::fs::read_dir(docs).unwrap().map(|it| it.unwrap().path());
         let files = files.filter(|path| path.extension().is_some_and(|it| it == "toml"));
         let files = files.map(|path| path.to_str().unwrap().to_owned());
         let built_in = a3_scenes::SCENES.iter().map(|entry| entry.name.to_owned());
@@ -216,9 +210,7 @@ mod tests {
         let others = ["attraction", "own force"];
         let rows = [FORCES, AFTER].into_iter().flat_map(rows).map(|row| row.0);
         let rows = rows.filter(|name| !others.contains(name));
-        let unseen: Vec<_> = rows
-            .filter(|name| !seen.iter().any(|it| it == name))
-            .collect();
+        let unseen: Vec<_> = rows.filter(|name| !seen.iter().any(|it| it == name)).collect();
         assert!(unseen.is_empty(), "{unseen:?}");
     }
 
@@ -242,10 +234,7 @@ mod tests {
         output.textures_delta.set.clear();
         output.textures_delta.free.clear();
         let font = FontId::proportional(12.5);
-        let all = [METHODS, FORCES, AFTER]
-            .map(str::chars)
-            .into_iter()
-            .flatten();
+        let all = [METHODS, FORCES, AFTER].map(str::chars).into_iter().flatten();
         let lost: Vec<_> = all
             .filter(|c| *c != '\n' && !ctx.fonts_mut(|fonts| fonts.has_glyph(&font, *c)))
             .collect();

@@ -122,9 +122,7 @@ impl Rows<'_> {
             return;
         }
         let mut flow = Flow::new(self.room);
-        let are_springs = links
-            .iter()
-            .all(|(link, _)| matches!(link, Pick::Spring(..)));
+        let are_springs = links.iter().all(|(link, _)| matches!(link, Pick::Spring(..)));
         let what = if are_springs { "springs" } else { "links" };
         self.say(&mut flow, &format!("{what} of particle {i} to"));
         for (link, other) in links {
@@ -186,9 +184,7 @@ impl Rows<'_> {
         }
         let k = own.iter().position(|pick| Some(*pick) == now.of);
         let next = own.get(k.map_or(0, |k| k + 1)).copied();
-        let words = now
-            .of
-            .map_or("of each".into(), |pick| format!("of {}", pick.name()));
+        let words = now.of.map_or("of each".into(), |pick| format!("of {}", pick.name()));
         let wish = PlotRequest::Axis(axis, Quantity { of: next, ..now });
         self.button(flow, &words, now.of.is_some(), wish);
     }
@@ -251,11 +247,7 @@ fn step(session: &Session, variable: Variable) -> f64 {
         [low.min(value), high.max(value)]
     });
     // A section passes angles any number of turns away, too.
-    let most = if variable == Variable::Angle {
-        TAU
-    } else {
-        f64::INFINITY
-    };
+    let most = if variable == Variable::Angle { TAU } else { f64::INFINITY };
     let part = (high - low).min(most) / STEPS;
     if !(part > 0.0 && part.is_finite()) {
         return 0.1;
@@ -277,10 +269,7 @@ struct Flow {
 impl Flow {
     /// Begins at the top of a room.
     fn new(room: Rect) -> Self {
-        Self {
-            room,
-            next: room.min,
-        }
+        Self { room, next: room.min }
     }
 
     /// Returns the place of a part of a width (points).

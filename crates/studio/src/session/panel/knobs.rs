@@ -37,30 +37,17 @@ const fn knob(
     read: fn(&Session, usize) -> Option<Dial>,
     set: fn(&mut Session, usize, f64),
 ) -> Knob {
-    Knob {
-        name,
-        about,
-        starts_group: false,
-        tunes_scene: false,
-        read,
-        set,
-    }
+    Knob { name, about, starts_group: false, tunes_scene: false, read, set }
 }
 
 /// Makes a knob start a group.
 const fn starts_group(knob: Knob) -> Knob {
-    Knob {
-        starts_group: true,
-        ..knob
-    }
+    Knob { starts_group: true, ..knob }
 }
 
 /// Marks a knob as one that tunes the scene.
 const fn tunes_scene(knob: Knob) -> Knob {
-    Knob {
-        tunes_scene: true,
-        ..knob
-    }
+    Knob { tunes_scene: true, ..knob }
 }
 
 /// All knobs, from top to bottom.
@@ -136,17 +123,12 @@ pub static KNOBS: &[Knob] = &[
             });
         },
     )),
-    tunes_scene(knob(
-        "gravity",
-        "Downward acceleration, in m/s².",
-        gravity,
-        |session, _, g| {
-            session.adjust(|network| {
-                let sideways = network.gravity().unwrap_or_default();
-                network.set_gravity(Vector3::new(sideways.x, -g, sideways.z));
-            });
-        },
-    )),
+    tunes_scene(knob("gravity", "Downward acceleration, in m/s².", gravity, |session, _, g| {
+        session.adjust(|network| {
+            let sideways = network.gravity().unwrap_or_default();
+            network.set_gravity(Vector3::new(sideways.x, -g, sideways.z));
+        });
+    })),
     starts_group(knob(
         "wind",
         "Whether the wind blows.",
@@ -165,9 +147,7 @@ pub static KNOBS: &[Knob] = &[
         |session, _, factor| {
             session.tuning.gusts = factor;
             if let Some(wind) = session.tuning.own.wind {
-                session
-                    .runs
-                    .change_all(|run| run.change_wind(wind.scaled(factor)));
+                session.runs.change_all(|run| run.change_wind(wind.scaled(factor)));
             }
         },
     )),
@@ -251,16 +231,11 @@ pub static KNOBS: &[Knob] = &[
             looks::each(&mut session.runs.panes, |show| show.springs_of = particle);
         },
     )),
-    knob(
-        "colour by",
-        "The quantity that colours show.",
-        colour,
-        |session, _, k| {
-            let chosen = Quantity::ALL.get(k as usize).copied();
-            let panes = &mut session.runs.panes;
-            looks::each(panes, |show| show.colouring.set_quantity(chosen));
-        },
-    ),
+    knob("colour by", "The quantity that colours show.", colour, |session, _, k| {
+        let chosen = Quantity::ALL.get(k as usize).copied();
+        let panes = &mut session.runs.panes;
+        looks::each(panes, |show| show.colouring.set_quantity(chosen));
+    }),
     knob(
         "full colour",
         "Upper end of the colour scale. It follows the largest value until it is set.",
@@ -271,16 +246,11 @@ pub static KNOBS: &[Knob] = &[
             looks::each(panes, |show| show.colouring.scale.fixed = end);
         },
     ),
-    knob(
-        "arrows",
-        "The vectors that arrows show.",
-        arrows,
-        |session, _, k| {
-            let chosen = Arrows::ALL.get(k as usize).copied();
-            let panes = &mut session.runs.panes;
-            looks::each(panes, |show| show.field.set_arrows(chosen));
-        },
-    ),
+    knob("arrows", "The vectors that arrows show.", arrows, |session, _, k| {
+        let chosen = Arrows::ALL.get(k as usize).copied();
+        let panes = &mut session.runs.panes;
+        looks::each(panes, |show| show.field.set_arrows(chosen));
+    }),
     knob(
         "drawn as",
         "The surface, its wires, or all springs, each kind in its colour and width.",
@@ -306,14 +276,9 @@ pub static KNOBS: &[Knob] = &[
         frame_limit,
         |session, _, limit| session.panel.frame_limit = limit as u32,
     ),
-    knob(
-        "film as",
-        "Format of the films that keys n and m make.",
-        film,
-        |session, _, k| {
-            session.panel.film = Ending::ALL.get(k as usize).copied().unwrap_or_default();
-        },
-    ),
+    knob("film as", "Format of the films that keys n and m make.", film, |session, _, k| {
+        session.panel.film = Ending::ALL.get(k as usize).copied().unwrap_or_default();
+    }),
     knob(
         "film of",
         "Simulated time that key n films, in s.",
@@ -366,12 +331,7 @@ impl Knob {
             if session.panel.material.is_some() {
                 return;
             }
-            let change = Change::Knob {
-                row: row_of(self.name),
-                pane: at,
-                from: dial.value,
-                to,
-            };
+            let change = Change::Knob { row: row_of(self.name), pane: at, from: dial.value, to };
             session.history.record(change, None);
         }
     }
@@ -379,20 +339,13 @@ impl Knob {
 
 /// Scales the springs of the scene to the tuned stiffness and damping.
 fn set_springs(session: &mut Session) {
-    let Tuning {
-        own,
-        stiffness,
-        damping,
-        ..
-    } = session.tuning.clone();
+    let Tuning { own, stiffness, damping, .. } = session.tuning.clone();
     let Some(own) = own.model.network() else {
         return;
     };
     session.adjust(|network| {
         // The springs are of the same scene and the factors within their scales, so this does not
         // fail.
-        let _ = network
-            .copy_springs(own)
-            .and_then(|()| network.scale_springs(stiffness, damping));
+        let _ = network.copy_springs(own).and_then(|()| network.scale_springs(stiffness, damping));
     });
 }

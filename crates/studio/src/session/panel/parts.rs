@@ -45,9 +45,7 @@ pub fn set(session: &mut Session, part: usize, to: bool) -> Result<(), String> {
     if let Some(row) = knob(session.tuning.parts[part].change) {
         (KNOBS[row].set)(session, 0, f64::from(u8::from(to)));
         let refused = || session.readings.message.clone().unwrap_or_default();
-        return (is_in(session, part) == to)
-            .then_some(())
-            .ok_or_else(refused);
+        return (is_in(session, part) == to).then_some(()).ok_or_else(refused);
     }
     let mut parts = session.tuning.left_out.clone();
     parts.retain(|other| *other != part);
@@ -82,11 +80,7 @@ pub fn turn(session: &mut Session, part: usize, turn: Turn) {
 /// Names a part, and says whether it is in the runs.
 pub fn name(session: &Session, part: usize) -> String {
     let name = &session.tuning.parts[part].name;
-    let state = if is_in(session, part) {
-        "in"
-    } else {
-        "left out"
-    };
+    let state = if is_in(session, part) { "in" } else { "left out" };
     format!("{name}: {state}")
 }
 
@@ -95,8 +89,7 @@ pub fn measured(session: &Session, part: usize) -> Option<&[String]> {
     let known = session.measuring.known_of(Question::Simplify)?;
     let mut rows = known.answer.as_ref().ok()?.report.rows.iter();
     let name = &session.tuning.parts[part].name;
-    rows.find(|row| row.first() == Some(name))
-        .map(Vec::as_slice)
+    rows.find(|row| row.first() == Some(name)).map(Vec::as_slice)
 }
 
 /// Begins the name of a value that says that a part is left out.
@@ -117,9 +110,7 @@ pub fn tuned(session: &Session) -> Vec<(String, f64)> {
 /// Returns the names and values of the knobs that tune parts that are there, and differ from the
 /// scene's own values.
 fn knobs(session: &Session) -> impl Iterator<Item = (String, f64)> {
-    let knobs = KNOBS
-        .iter()
-        .filter(|knob| knob.tunes_scene && !is_left_out(session, knob.name));
+    let knobs = KNOBS.iter().filter(|knob| knob.tunes_scene && !is_left_out(session, knob.name));
     let dials = knobs.filter_map(|knob| Some((knob.name, (knob.read)(session, 0)?)));
     let other = dials.filter(|(_, dial)| dial.value != dial.own);
     other.map(|(name, dial)| (name.into(), dial.value))
@@ -130,9 +121,7 @@ fn knobs(session: &Session) -> impl Iterator<Item = (String, f64)> {
 /// if the parts cannot be left out.
 pub fn tune(session: &mut Session, tuned: &[(String, f64)]) -> Result<(), String> {
     let is_named = |name: &str| {
-        let mut names = tuned
-            .iter()
-            .filter_map(|(name, _)| name.strip_prefix(WITHOUT));
+        let mut names = tuned.iter().filter_map(|(name, _)| name.strip_prefix(WITHOUT));
         names.any(|other| other == name)
     };
     let parts = session.tuning.parts.iter().enumerate();
@@ -172,9 +161,7 @@ fn turn_knobs(session: &mut Session, tuned: &[(String, f64)]) {
 /// on and the scene stays tuned. Fails, and changes nothing, if there is no such scene, or if
 /// self-collision is on and surfaces would cross.
 pub fn leave_out(session: &mut Session, parts: &[usize]) -> Result<(), String> {
-    go_on(session, None, &mut |session| {
-        exchange::leave_out(session, parts.to_vec())
-    })
+    go_on(session, None, &mut |session| exchange::leave_out(session, parts.to_vec()))
 }
 
 /// Exchanges the scene, while the motion goes on and the scene stays tuned. `touching` says whether

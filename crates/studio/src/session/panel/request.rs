@@ -118,11 +118,7 @@ fn turn_row(session: &mut Session, at: usize, row: usize, turn: Turn) {
 /// Makes the bodies of the scene that can be of a material of it, while the motion goes on.
 fn name_material(session: &mut Session, material: &Material) {
     let Material { name, about, .. } = material;
-    let done = edit(
-        session,
-        &Edit::NameMaterial(name),
-        &format!("material {name}"),
-    );
+    let done = edit(session, &Edit::NameMaterial(name), &format!("material {name}"));
     let said = match done {
         Err(why) => why,
         Ok(()) => match session.runs.fit_steps() {
@@ -165,9 +161,8 @@ pub fn type_key(session: &mut Session, key: TextKey) {
 /// the scale.
 fn value(session: &Session, row: usize, typed: &str) -> Result<f64, String> {
     let dial = (KNOBS[row].read)(session, pane(session));
-    let [from, to] = dial
-        .and_then(|dial| dial.scale.ends())
-        .ok_or("this scene has no such value")?;
+    let [from, to] =
+        dial.and_then(|dial| dial.scale.ends()).ok_or("this scene has no such value")?;
     if typed.contains(',') {
         let point = typed.replace(',', ".");
         return Err(format!("use a decimal point: {point}"));

@@ -75,12 +75,7 @@ fn apply(session: &mut Session, recorded: &Recorded, redo: bool) -> Result<Strin
             })?;
             edit.name.clone()
         }
-        Change::Knob {
-            row,
-            pane,
-            from,
-            to,
-        } => {
+        Change::Knob { row, pane, from, to } => {
             let (row, pane) = (*row, *pane);
             let value = if redo { *to } else { *from };
             let now = (KNOBS[row].read)(session, pane);
@@ -108,25 +103,16 @@ pub fn edit(session: &mut Session, edit: &Edit, name: &str) -> Result<(), String
     let touches = first.touching();
     // Rigid bodies touch what there is.
     let touching = matches!(edit, Edit::AddBody(_)).then_some(true);
-    let there = Passage {
-        particles,
-        bodies,
-        touching,
-    };
+    let there = Passage { particles, bodies, touching };
     let back = Passage {
         particles: particles.back(),
         bodies: bodies.back(),
         touching: touching.map(|_| touches),
     };
-    let deletes = matches!(
-        edit,
-        Edit::Disjoin(_) | Edit::RemoveParticle(_) | Edit::RemoveBody(_)
-    );
+    let deletes = matches!(edit, Edit::Disjoin(_) | Edit::RemoveParticle(_) | Edit::RemoveBody(_));
     session.runs.align();
     let before = deletes.then(|| session.runs.moments());
-    go_on(session, touching, &mut |session| {
-        exchange::edit(session, after.clone(), &there, &[])
-    })?;
+    go_on(session, touching, &mut |session| exchange::edit(session, after.clone(), &there, &[]))?;
     let edit = Arc::new(EditChange {
         name: name.into(),
         origins: [origin, after],

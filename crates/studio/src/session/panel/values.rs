@@ -70,10 +70,7 @@ pub fn step(session: &Session, at: usize) -> Option<Dial> {
     let run = &session.runs.panes.get(at)?.simulation;
     let (ends, words) = match run.control() {
         // The dial covers common steps, and more if the present step is beyond them.
-        Control::Step(step) => (
-            [step.min(1e-5), step.max(1.0)],
-            format!("{} s", short(step, 3)),
-        ),
+        Control::Step(step) => ([step.min(1e-5), step.max(1.0)], format!("{} s", short(step, 3))),
         Control::Tolerance(tolerance) => {
             let range = bounds::of(run.control());
             ([*range.start(), *range.end()], format!("{tolerance:e}"))
@@ -169,9 +166,7 @@ pub fn radii(network: &Network) -> impl Iterator<Item = (usize, f64)> {
 /// Returns the last floor among the obstacles of a network, with its index.
 pub fn floor(network: &Network) -> Option<(usize, &Obstacle)> {
     let obstacles = network.obstacles().iter().enumerate();
-    obstacles
-        .rev()
-        .find(|(_, obstacle)| obstacle.shape == Shape::Floor)
+    obstacles.rev().find(|(_, obstacle)| obstacle.shape == Shape::Floor)
 }
 
 pub fn sphere(session: &Session, _: usize) -> Option<Dial> {

@@ -125,10 +125,7 @@ impl Pick {
             (Self::Scene, _) => whole(run),
             _ => [f64::NAN; VALUES],
         };
-        Row {
-            time: run.time(),
-            values,
-        }
+        Row { time: run.time(), values }
     }
 }
 
@@ -201,16 +198,8 @@ fn spring(network: &Network, run: &Simulation, i: usize, j: usize) -> [f64; VALU
     let length = way.norm();
     let pull = Vector3::new(force[0], force[2], force[4]);
     values[7] = alone.energy(&x, &v).elastic;
-    values[1] = if rest > 0.0 {
-        length / rest - 1.0
-    } else {
-        f64::NAN
-    };
-    values[2] = if length > 0.0 {
-        pull.dot(&way) / length
-    } else {
-        0.0
-    };
+    values[1] = if rest > 0.0 { length / rest - 1.0 } else { f64::NAN };
+    values[2] = if length > 0.0 { pull.dot(&way) / length } else { 0.0 };
     values
 }
 
@@ -232,11 +221,7 @@ fn spring_energy(network: &Network, run: &Simulation, i: usize) -> f64 {
     let slack = slack.map(|s| of(&s, 0.5 * s.law.stiffness * stretch(&s).max(0.0).powi(2)));
     let strips = network.buckling().filter(|b| b.i == i || b.j == i);
     let bent = strips.filter_map(|b| {
-        let share = if network.is_pinned(b.i + b.j - i) {
-            1.0
-        } else {
-            0.5
-        };
+        let share = if network.is_pinned(b.i + b.j - i) { 1.0 } else { 0.5 };
         let x = columns(&[run.position(b.i), run.position(b.j)]);
         let mut alone = Network::new(vec![1.0; 2]).ok()?;
         alone.add_buckling(Buckling { i: 0, j: 1, ..b }).ok()?;
@@ -247,13 +232,10 @@ fn spring_energy(network: &Network, run: &Simulation, i: usize) -> f64 {
 
 /// Returns the springs of a network that only pull.
 fn cords(network: &Network) -> impl Iterator<Item = Spring> {
-    let all = network
-        .elements()
-        .iter()
-        .filter_map(|element| match element {
-            Element::Cords(cords) => Some(cords.springs()),
-            _ => None,
-        });
+    let all = network.elements().iter().filter_map(|element| match element {
+        Element::Cords(cords) => Some(cords.springs()),
+        _ => None,
+    });
     all.flatten()
 }
 
@@ -269,12 +251,7 @@ fn alone(network: &Network, i: usize, j: usize) -> Option<(Network, f64)> {
     }
     for strip in network.buckling().filter(|b| is(b.i, b.j)) {
         rest = Some(strip.rest_length);
-        pair.add_buckling(Buckling {
-            i: 0,
-            j: 1,
-            ..strip
-        })
-        .ok()?;
+        pair.add_buckling(Buckling { i: 0, j: 1, ..strip }).ok()?;
     }
     let cords: Vec<_> = cords(network).filter(|s| is(s.i, s.j)).collect();
     if let Some(cord) = cords.last() {
@@ -352,16 +329,8 @@ impl Variable {
         (Self::Kinetic, ["kinetic", "kinetic energy", "J"], &[6]),
         (Self::Elastic, ["elastic", "elastic energy", "J"], &[7]),
         (Self::Contact, ["contact", "energy of contact", "J"], &[9]),
-        (
-            Self::Gravitational,
-            ["gravity", "gravitational energy", "J"],
-            &[8],
-        ),
-        (
-            Self::Potential,
-            ["potential", "potential energy", "J"],
-            &[7, 8, 9],
-        ),
+        (Self::Gravitational, ["gravity", "gravitational energy", "J"], &[8]),
+        (Self::Potential, ["potential", "potential energy", "J"], &[7, 8, 9]),
         (Self::Energy, ["energy", "energy", "J"], &[6, 7, 8, 9]),
         (Self::Angle, ["angle", "angle", "rad"], &[ANGLE]),
         (Self::Tilt, ["tilt", "angle to the vertical", "rad"], &[14]),

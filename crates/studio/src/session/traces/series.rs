@@ -130,10 +130,7 @@ impl Traces {
     /// Returns the same picks and the same trigger without values, for another run.
     pub fn without_values(&self) -> Self {
         let all = self.all.iter().map(|(pick, _)| (*pick, Series::default()));
-        Self {
-            all: all.collect(),
-            trigger: self.trigger,
-        }
+        Self { all: all.collect(), trigger: self.trigger }
     }
 
     /// Plots something from now on, or no longer.
@@ -169,8 +166,7 @@ impl Traces {
     pub fn drop_removed(&mut self, before: &Simulation, now: &Simulation, particles: Splice) {
         let back = [particles.back(), Splice::default()];
         let was_there = |pick: Pick| pick.renumbered(back).is_some_and(|it| it.is_in(before));
-        self.all
-            .retain(|(pick, _)| pick.is_in(now) || !was_there(*pick));
+        self.all.retain(|(pick, _)| pick.is_in(now) || !was_there(*pick));
     }
 
     /// Adds the values of the present state of a run.
@@ -250,9 +246,8 @@ pub fn interpolate(rows: &[Row], time: f64) -> Row {
     let mut values = [0.0; _];
     for (k, row) in rows.iter().enumerate() {
         let others = rows.iter().enumerate().filter(|(j, _)| *j != k);
-        let weight: f64 = others
-            .map(|(_, other)| (time - other.time) / (row.time - other.time))
-            .product();
+        let weight: f64 =
+            others.map(|(_, other)| (time - other.time) / (row.time - other.time)).product();
         for (sum, value) in values.iter_mut().zip(row.values) {
             *sum += weight * value;
         }
@@ -323,11 +318,7 @@ mod tests {
         let trigger = Trigger::Rises(Variable::Angle, 0.5);
         for k in 0..4000 {
             let time = 0.01 * f64::from(k);
-            let angle = if time < 20.0 {
-                2.0 * time
-            } else {
-                80.0 - 2.0 * time
-            };
+            let angle = if time < 20.0 { 2.0 * time } else { 80.0 - 2.0 * time };
             let mut values = [0.0; VALUES];
             values[ANGLE] = angle.sin().atan2(angle.cos());
             series.push(Row { time, values }, trigger);
@@ -365,10 +356,7 @@ mod tests {
         let count = series.rows().len();
         assert!(count.abs_diff(240 * KEPT as usize) <= 1, "{count}");
         let last = series.nearest(1e9).unwrap().time;
-        assert_eq!(
-            series.nearest(last - 0.998).unwrap().time,
-            last - 239.0 / 240.0 - 1.0 / 240.0
-        );
+        assert_eq!(series.nearest(last - 0.998).unwrap().time, last - 239.0 / 240.0 - 1.0 / 240.0);
         assert!(Series::default().nearest(1.0).is_none());
     }
 }

@@ -72,8 +72,7 @@ impl Quantity {
 
     /// Says of which thing this is, if it is of one.
     fn owner(self) -> String {
-        self.of
-            .map_or(String::new(), |pick| format!(" of {}", pick.name()))
+        self.of.map_or(String::new(), |pick| format!(" of {}", pick.name()))
     }
 }
 

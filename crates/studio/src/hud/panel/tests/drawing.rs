@@ -26,11 +26,7 @@ fn the_mouse_turns_every_row_and_only_that() {
                     let share = now.scale.share(now.value);
                     let expected = f64::from(80.0 / (high.x - low.x));
                     // The drag starts at the middle of the thumb, and values are rounded.
-                    assert!(
-                        (share - expected).abs() < 0.3,
-                        "{} of {name}: {share}",
-                        knob.name
-                    );
+                    assert!((share - expected).abs() < 0.3, "{} of {name}: {share}", knob.name);
                 }
             }
             let mut now = changed(&before, &session);
@@ -96,9 +92,7 @@ fn the_chosen_row_is_visible() {
         session.panel.row = k;
         let texts = screen.written(&session);
         assert!(
-            texts
-                .iter()
-                .any(|(words, rect, seen)| words == knob.name && seen.contains_rect(*rect)),
+            texts.iter().any(|(words, rect, seen)| words == knob.name && seen.contains_rect(*rect)),
             "{}",
             knob.name
         );
@@ -112,10 +106,5 @@ fn the_help_hides_the_panel() {
     assert_eq!(PANE.taken([1280.0, 720.0]), [304.0, 0.0]);
     session.act(RunAction::Help, 0);
     assert!(!session.shows(RunAction::Panel));
-    assert!(
-        !Screen::new(SIZES[0])
-            .read(&session)
-            .iter()
-            .any(|(words, _)| words == "Tuning")
-    );
+    assert!(!Screen::new(SIZES[0]).read(&session).iter().any(|(words, _)| words == "Tuning"));
 }

@@ -50,17 +50,11 @@ fn every_part_comes_and_goes(session: &mut Session) -> (usize, Vec<String>) {
         }
         frames(session, 0.05);
         let run = session.runs.first();
-        assert!(
-            run.state().iter().all(|y| y.is_finite()),
-            "{name} of {scene}"
-        );
+        assert!(run.state().iter().all(|y| y.is_finite()), "{name} of {scene}");
         if run.blow_up().is_some() {
             session.act(RunAction::Reset, 0);
         } else {
-            assert!(
-                run.time() > now.0 && run.steps() > steps,
-                "{name} of {scene}"
-            );
+            assert!(run.time() > now.0 && run.steps() > steps, "{name} of {scene}");
         }
         let mut then = moment(session);
         // Surfaces that crossed meanwhile cannot begin to touch.
@@ -73,10 +67,7 @@ fn every_part_comes_and_goes(session: &mut Session) -> (usize, Vec<String>) {
         assert_eq!(moment(session), then, "{name} of {scene}");
         assert!(forces(session, &now) == before, "{name} of {scene}");
         frames(session, 0.05);
-        assert!(
-            session.runs.first().blow_up().is_none(),
-            "{name} of {scene}"
-        );
+        assert!(session.runs.first().blow_up().is_none(), "{name} of {scene}");
     }
     (count, changing)
 }
@@ -100,9 +91,7 @@ fn every_part_of_every_scene_comes_and_goes() {
 fn parts_of_scene_files_come_and_go() {
     let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenes/");
     let mut count = 0;
-    for file in [
-        "funnel", "tear", "pile", "beads", "mobile", "turning", "drawn",
-    ] {
+    for file in ["funnel", "tear", "pile", "beads", "mobile", "turning", "drawn"] {
         let file = format!("{docs}{file}.toml");
         let mut session = opened(&["t", "0.001", "--scene", &file]);
         count += every_part_comes_and_goes(&mut session).0;
@@ -120,22 +109,13 @@ fn obstacles_keep_their_paths_when_others_leave() {
     let second = "\n[[sphere]]\ncenter = [3, -2, 0]\nradius = 0.5\n";
     std::fs::write(&file, format!("{text}{second}")).unwrap();
     let mut session = opened(&["r", "0.005", "--scene", file.to_str().unwrap()]);
-    apply(
-        &mut session,
-        PanelRequest::Turn(row_of("sphere"), Turn::To(0.8)),
-        0,
-    );
+    apply(&mut session, PanelRequest::Turn(row_of("sphere"), Turn::To(0.8)), 0);
     let tuned_before = tuned(&session);
     let spheres = |session: &Session| {
         let network = network(session);
-        let spheres = network
-            .obstacles()
-            .iter()
-            .filter(|o| o.shape != Shape::Floor);
+        let spheres = network.obstacles().iter().filter(|o| o.shape != Shape::Floor);
         let time = session.runs.first().time();
-        spheres
-            .map(|o| (o.shape.clone(), o.path.at(time).position))
-            .collect::<Vec<_>>()
+        spheres.map(|o| (o.shape.clone(), o.path.at(time).position)).collect::<Vec<_>>()
     };
     let place = Vector3::new(3.0, -2.0, 0.0);
     assert!(session.runs.grab_obstacle(1));
@@ -166,11 +146,7 @@ fn pins_hands_and_tuning_stay() {
     assert!(session.runs.grab(210));
     session.runs.pull(Vector3::new(0.5, 0.5, 0.5));
     for (name, value) in [("gravity", 5.0), ("stiffness", 2.0), ("gusts", 1.5)] {
-        apply(
-            &mut session,
-            PanelRequest::Turn(row_of(name), Turn::To(value)),
-            0,
-        );
+        apply(&mut session, PanelRequest::Turn(row_of(name), Turn::To(value)), 0);
     }
     frames(&mut session, 0.1);
     let (now, before) = (moment(&session), tuned(&session));
@@ -182,15 +158,9 @@ fn pins_hands_and_tuning_stay() {
     assert!(network(&session).is_pinned(200));
     assert!(session.readings.left_out == ["gravity"]);
     // The knob of gravity stays in its row, and does nothing.
-    let row = rows(&session)
-        .into_iter()
-        .find(|row| row.1.name == "gravity");
+    let row = rows(&session).into_iter().find(|row| row.1.name == "gravity");
     assert_eq!(row.unwrap().2.words, "left out");
-    apply(
-        &mut session,
-        PanelRequest::Turn(row_of("gravity"), Turn::To(9.0)),
-        0,
-    );
+    apply(&mut session, PanelRequest::Turn(row_of("gravity"), Turn::To(9.0)), 0);
     assert_eq!(network(&session).gravity(), None);
     let said = session.readings.message.clone().unwrap();
     assert!(said.starts_with("Gravity is left out"), "{said}");
@@ -206,21 +176,14 @@ fn pins_hands_and_tuning_stay() {
 #[test]
 fn switches_agree_with_keys_and_knobs() {
     let mut session = opened(&["r", "0.005", "--scene", "mit-sphere"]);
-    for (name, action) in [
-        ("wind", RunAction::Wind),
-        ("self-collision", RunAction::Touch),
-    ] {
+    for (name, action) in [("wind", RunAction::Wind), ("self-collision", RunAction::Touch)] {
         let k = part(&session, name);
         assert!(!is_in(&session, k), "{name}");
         session.act(action, 0);
         assert!(is_in(&session, k), "{name}");
         toggle(&mut session, name);
         let run = session.runs.first();
-        let on = if name == "wind" {
-            run.windy()
-        } else {
-            run.touching()
-        };
+        let on = if name == "wind" { run.windy() } else { run.touching() };
         assert!(!on && !is_in(&session, k), "{name}");
     }
     toggle(&mut session, "floor");

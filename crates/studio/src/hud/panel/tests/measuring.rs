@@ -19,17 +19,9 @@ fn answer(task: &Task, monitor: &dyn Monitor) -> Result<Answer, Failure> {
             "gravity" => "needed",
             _ => "changes little, saves little",
         };
-        [&*part.name, "1.2e-1", "23 %", "> 999 %", verdict]
-            .map(String::from)
-            .to_vec()
+        [&*part.name, "1.2e-1", "23 %", "> 999 %", verdict].map(String::from).to_vec()
     });
-    Ok(Answer {
-        report: Report {
-            rows: rows.collect(),
-            ..Report::default()
-        },
-        ..Answer::default()
-    })
+    Ok(Answer { report: Report { rows: rows.collect(), ..Report::default() }, ..Answer::default() })
 }
 
 /// Measures the parts by the key of their row.
@@ -46,21 +38,14 @@ fn measure(session: &mut Session) {
 #[test]
 fn parts_have_the_verdicts_of_the_question_until_another_scene() {
     let mut session = opened(&["r", "0.005", "--scene", "mit"]);
-    assert!(
-        !numbers(&session).contains(&measuring_row()),
-        "nothing answers"
-    );
+    assert!(!numbers(&session).contains(&measuring_row()), "nothing answers");
     measure(&mut session);
     let [gravity, bend] = ["gravity", "bend springs"].map(|name| part(&session, name));
     let verdict = |session: &Session, k| measured(session, k).map(|row| row[4].clone());
     assert_eq!(verdict(&session, gravity).unwrap(), "needed");
     // What was measured of a part stays while it is left out.
     toggle(&mut session, "bend springs");
-    assert!(
-        verdict(&session, bend)
-            .unwrap()
-            .starts_with("changes little")
-    );
+    assert!(verdict(&session, bend).unwrap().starts_with("changes little"));
     session.act(RunAction::NextScene, 0);
     assert_eq!(verdict(&session, 0), None);
 }
@@ -73,12 +58,7 @@ fn rows_of_parts_fit() {
     for k in 0..session.tuning.parts.len() {
         let _ = set_part(&mut session, k, false);
     }
-    for size in [
-        [1280.0, 720.0],
-        [800.0, 600.0],
-        [2300.0, 1200.0],
-        [500.0, 200.0],
-    ] {
+    for size in [[1280.0, 720.0], [800.0, 600.0], [2300.0, 1200.0], [500.0, 200.0]] {
         let mut screen = Screen::new(size);
         let texts = screen.written(&session);
         let edge = size[0] - PANE.taken(size)[0];

@@ -71,10 +71,8 @@ impl Screen {
     pub fn place(&mut self, session: &Session, name: &str) -> (Pos2, [Pos2; 2]) {
         let texts = self.read(session);
         let left = self.size[0] - self.width();
-        let (_, row) = texts
-            .iter()
-            .find(|(words, rect)| words == name && rect.left() > left)
-            .unwrap();
+        let (_, row) =
+            texts.iter().find(|(words, rect)| words == name && rect.left() > left).unwrap();
         let (y, margin) = (row.center().y, PANE.margins[0]);
         let at = |x: f32| pos2(left + margin + x, y);
         let wide = self.width() - 2.0 * margin;
@@ -102,8 +100,7 @@ pub fn type_key(session: &mut Session, key: PanelKey, shift: bool) {
 /// Returns the names and values of all rows.
 pub fn dials(session: &Session) -> Vec<(&'static str, f64)> {
     let rows = rows(session).into_iter();
-    rows.map(|(_, knob, dial)| (knob.name, dial.value))
-        .collect()
+    rows.map(|(_, knob, dial)| (knob.name, dial.value)).collect()
 }
 
 /// Returns the names of the rows that differ, except the colour scale, which exists only with

@@ -71,12 +71,7 @@ fn a_turn_changes_forces_and_turning_back_restores_them() {
         apply(session, PanelRequest::Turn(k, turn), 0);
     };
     let before = forces(&session);
-    for (name, value) in [
-        ("stiffness", 3.0),
-        ("drag", 0.15),
-        ("gravity", 3.7),
-        ("gusts", 2.5),
-    ] {
+    for (name, value) in [("stiffness", 3.0), ("drag", 0.15), ("gravity", 3.7), ("gusts", 2.5)] {
         turn(&mut session, name, Turn::To(value));
         assert_ne!(forces(&session), before, "{name}");
         // A reset keeps the tuning.
@@ -107,9 +102,7 @@ fn a_turn_changes_forces_and_turning_back_restores_them() {
     let shapes = |session: &Session| {
         let network = network(session);
         let obstacles = network.obstacles().iter();
-        obstacles
-            .map(|o| (o.shape.clone(), o.path))
-            .collect::<Vec<_>>()
+        obstacles.map(|o| (o.shape.clone(), o.path)).collect::<Vec<_>>()
     };
     let own = shapes(&session);
     assert_eq!(own[0].0, Shape::Sphere { radius: 0.75 });
@@ -129,17 +122,7 @@ fn a_turn_changes_forces_and_turning_back_restores_them() {
 fn another_scene_is_not_tuned() {
     let mut session = opened(&["r", "0.005"]);
     for k in 2..=5 {
-        apply(
-            &mut session,
-            PanelRequest::Turn(
-                k,
-                Turn::By {
-                    up: true,
-                    other: false,
-                },
-            ),
-            0,
-        );
+        apply(&mut session, PanelRequest::Turn(k, Turn::By { up: true, other: false }), 0);
     }
     session.act(RunAction::NextScene, 0);
     session.act(RunAction::NextScene, 0);
@@ -180,10 +163,7 @@ fn every_pane_and_the_reference_are_tuned_alike() {
     session.panel.pane = 1;
     apply(&mut session, PanelRequest::Turn(1, Turn::To(0.002)), 0);
     assert_eq!(session.runs.first().control(), Control::Step(0.005));
-    assert_eq!(
-        session.runs.panes[1].simulation.control(),
-        Control::Step(0.002)
-    );
+    assert_eq!(session.runs.panes[1].simulation.control(), Control::Step(0.002));
 }
 
 #[test]
@@ -243,12 +223,7 @@ fn values_are_typed() {
     let said = session.readings.message.take().unwrap();
     assert!(said.contains("Gravity: must be a number"), "{said}");
     assert!(!type_value(&mut session, "gravity", "3.21"));
-    let gravity = session
-        .runs
-        .first()
-        .model()
-        .network()
-        .and_then(Network::gravity);
+    let gravity = session.runs.first().model().network().and_then(Network::gravity);
     assert_eq!(gravity.unwrap().y, -3.21);
     assert!(!type_value(&mut session, "step", "1/120"));
     assert_eq!(session.runs.first().control(), Control::Step(1.0 / 120.0));
@@ -277,28 +252,13 @@ fn turns_are_undone_and_redone() {
             }
             let before = dials(&session);
             let there = |session: &Session| (KNOBS[row].read)(session, 0).map(|dial| dial.value);
-            apply(
-                &mut session,
-                PanelRequest::Turn(
-                    row,
-                    Turn::By {
-                        up: true,
-                        other: false,
-                    },
-                ),
-                0,
-            );
+            apply(&mut session, PanelRequest::Turn(row, Turn::By { up: true, other: false }), 0);
             let turned = there(&session);
             if turned == Some(dial.value) {
                 continue;
             }
             undo(&mut session, false);
-            assert_eq!(
-                there(&session),
-                Some(dial.value),
-                "{} of {name}",
-                KNOBS[row].name
-            );
+            assert_eq!(there(&session), Some(dial.value), "{} of {name}", KNOBS[row].name);
             let mut others = changed(&before, &session);
             // A step that was shortened for a material stays so.
             others.retain(|other| KNOBS[row].name != "material" || *other != "step");
@@ -315,10 +275,7 @@ fn turns_are_undone_and_redone() {
 fn a_liquid_has_no_row_of_springs() {
     let names = |scene: &str| {
         let session = opened(&["--scene", scene]);
-        rows(&session)
-            .iter()
-            .map(|row| row.1.name)
-            .collect::<Vec<_>>()
+        rows(&session).iter().map(|row| row.1.name).collect::<Vec<_>>()
     };
     let [liquid, cloth] = ["dam-break", "cloth"].map(names);
     assert!(liquid.contains(&"stiffness") && !liquid.contains(&"springs of"));
@@ -336,11 +293,7 @@ fn a_material_is_chosen_and_undone() {
     let dial = |session: &Session| (KNOBS[row].read)(session, 0).unwrap();
     assert_eq!(dial(&session).words, "own");
     let denim = MATERIALS.iter().position(|it| it.name == "denim").unwrap();
-    apply(
-        &mut session,
-        PanelRequest::Turn(row, Turn::Exactly(denim as f64)),
-        0,
-    );
+    apply(&mut session, PanelRequest::Turn(row, Turn::Exactly(denim as f64)), 0);
     let said = session.readings.message.take().unwrap();
     assert!(
         said.starts_with("Denim: jeans of 11 oz. ") && said.contains("would not hold"),
@@ -353,10 +306,6 @@ fn a_material_is_chosen_and_undone() {
     frames(&mut session, 0.2);
     assert!(session.runs.any_alive());
     undo(&mut session, false);
-    assert!(
-        session.scenes.shown.source.description == own,
-        "{:?}",
-        session.readings.message
-    );
+    assert!(session.scenes.shown.source.description == own, "{:?}", session.readings.message);
     assert_eq!(dial(&session).words, "own");
 }
