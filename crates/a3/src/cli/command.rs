@@ -65,7 +65,7 @@ pub struct Cli {
 #[derive(Subcommand)]
 pub enum Command {
     /// Simulate without a window and write the final state, or every frame: JSON, CSV, NPZ, OBJ,
-    /// PC2, GLB, USD
+    /// GLB, USD
     Simulate(Simulate),
     /// Simulate without a window and write a picture or a film: PNG, GIF, MP4
     #[cfg(feature = "window")]
@@ -246,14 +246,12 @@ pub struct Simplify {
     FILE.npz       arrays of all frames for NumPy: time, positions, velocities and masses\n  \
     FILE.obj       the final surface with normals, or points and lines where there is no surface\n  \
     FILE-####.obj  one such file for each frame, numbered with as many digits as there are #\n  \
-    FILE.pc2       a point cache (PC2), and beside it FILE.obj, the mesh that it moves\n  \
     FILE.glb       glTF 2.0 with a morph target for each frame, at most 600\n  \
     FILE.usda      Universal Scene Description: meshes, curves and points with time samples\n  \
     FILE.vtu       the final tetrahedra of solids with their stress, for ParaView; also FILE-####.vtu\n\n\
     Frames are at exactly k / N, from 0 to --until; no step is shortened for them. Particles keep\n\
-    their order and numbers in all files. OBJ, PC2, GLB and USD are in single precision. A run that\n\
-    blows up or is interrupted leaves no file, except for the finished files of a sequence. In Blender,\n\
-    load a PC2 with the modifier Mesh Cache and leave its axes as they are.")]
+    their order and numbers in all files. OBJ, GLB and USD are in single precision. A run that blows\n\
+    up or is interrupted leaves no file, except for the finished files of a sequence.")]
 pub struct Simulate {
     #[command(flatten)]
     pub run: RunOptions,

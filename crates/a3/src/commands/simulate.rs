@@ -133,7 +133,7 @@ fn warn_of_first_frame(options: &Simulate, frames: &FrameTimes) {
 /// Warns that a format with one mesh for all frames does not show broken springs.
 fn warn_of_tears(options: &Simulate, simulation: &Simulation) {
     let one_mesh = |ending: &&str| output::ends_in(&options.output, ending);
-    if simulation.tears() > 0 && ["pc2", "glb", "usda"].iter().any(one_mesh) {
+    if simulation.tears() > 0 && ["glb", "usda"].iter().any(one_mesh) {
         terminal::warn(&format!(
             "{} springs broke, but {} has one mesh for all its frames: a sequence such as torn-####.obj has the holes",
             simulation.tears(),

@@ -87,7 +87,6 @@ fn exports_survive_every_fault() {
     fail_everywhere(&format!("{run} -o x.npz"), &["x.npz"], 10);
     fail_everywhere(&format!("{run} -o x.obj"), &["x.obj"], 5);
     fail_everywhere(&format!("{run} -o x-#.obj"), &["x-2.obj"], 20);
-    fail_everywhere(&format!("{run} -o x.pc2"), &["x.pc2", "x.obj"], 10);
     fail_everywhere(&format!("{run} -o x.glb"), &["x.glb"], 7);
     fail_everywhere(&format!("{run} -o x.usda"), &["x.usda"], 7);
 }

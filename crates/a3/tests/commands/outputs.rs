@@ -47,7 +47,6 @@ fn no_output_overwrites_an_input_or_another_output() {
     let (reads, two, no_chart) =
         ("reads this file", "two outputs", "does not hold the data of a chart");
     for (words, says) in [
-        (sheet("sheet.pc2"), reads),
         (sheet("./sheet.obj"), reads),
         (sheet("hard.obj"), reads),
         (sheet("soft.obj"), reads),
@@ -147,7 +146,6 @@ fn a_limit_is_named_by_every_format() {
         "simulate v 0.01 --until 1 --fps 60 --output x.json",
         "simulate v 0.01 --until 1 --output x.csv",
         "simulate v 0.01 --until 1 --output x.obj",
-        "simulate v 0.01 --until 1 --output x.pc2",
         "simulate v 0.01 --until 1 --output x.glb",
         "render v 0.01 --until 1 --output x.png",
         "render v 0.01 --until 1 --output x.gif",

@@ -8,7 +8,7 @@ use a3_files::output;
 use a3_files::setup::Run;
 
 use super::geometry::{Export, Job};
-use super::{csv, glb, json, npz, obj, pc2, usd, vtu};
+use super::{csv, glb, json, npz, obj, usd, vtu};
 
 /// Default frames per second.
 const DEFAULT_RATE: f64 = 30.0;
@@ -17,7 +17,7 @@ const DEFAULT_RATE: f64 = 30.0;
 const MAX_SIZES: (f64, f64) = (16.0, 4.0);
 
 /// Endings of the files of all formats.
-const ENDINGS: &[&str] = &["json", "csv", "npz", "obj", "pc2", "glb", "usda", "vtu"];
+const ENDINGS: &[&str] = &["json", "csv", "npz", "obj", "glb", "usda", "vtu"];
 
 /// Checks that the output is standard output or has the ending of a format.
 pub fn check_ending(path: &Path) -> Result<(), Failure> {
@@ -76,7 +76,6 @@ pub fn begin(
     let (size, largest) = match ending {
         Some("csv") => (csv::ROW_SIZE * particles * count, MAX_SIZES.0),
         Some("npz") => (npz::size(particles, several), MAX_SIZES.1),
-        Some("pc2") => (pc2::size(simulation, several), MAX_SIZES.0),
         Some("glb") => {
             glb::check(several)?;
             (glb::size(job), MAX_SIZES.1)
@@ -93,7 +92,6 @@ pub fn begin(
     let export: Box<dyn Export> = match (ending, sequence) {
         (Some("csv"), _) => Box::new(csv::Csv::new(path, first)?),
         (Some("npz"), _) => Box::new(npz::Npz::new(path, simulation, several)?),
-        (Some("pc2"), _) => Box::new(pc2::Pc2::new(job)?),
         (Some("glb"), _) => Box::new(glb::Glb::new(job)?),
         (Some("usda"), _) => Box::new(usd::Usd::new(job)?),
         (Some("obj" | "vtu"), Some(sequence)) => {

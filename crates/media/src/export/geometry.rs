@@ -102,18 +102,6 @@ impl Geometry {
         }
     }
 
-    /// Returns the vertices that other programs keep when they read a file: those that triangles or
-    /// lines use, in order, or the points if there are neither.
-    pub fn in_use(&self) -> Vec<u32> {
-        let corners = self.triangles.iter().flatten();
-        let ends = self.lines.iter().flatten();
-        let used: BTreeSet<u32> = corners.chain(ends).copied().collect();
-        if used.is_empty() {
-            return self.points.clone();
-        }
-        used.into_iter().collect()
-    }
-
     /// Computes the unit normal at each vertex: the direction of the sum, over its triangles, of
     /// the cross product of two sides, so that triangles are weighted by area. A particle without a
     /// surface has a normal that points upwards.

@@ -68,7 +68,7 @@ pub fn check(frames: FrameTimes) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::usage(format!(
-        "{} frames are too many for a .glb, which has at most {MAX_FRAMES}: use a lower --fps, a .pc2, or film-####.obj",
+        "{} frames are too many for a .glb, which has at most {MAX_FRAMES}: use a lower --fps, a .usda, or film-####.obj",
         frames.count
     )))
 }

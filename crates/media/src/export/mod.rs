@@ -7,7 +7,6 @@ mod glb;
 mod json;
 mod npz;
 mod obj;
-mod pc2;
 mod usd;
 mod vtu;
 

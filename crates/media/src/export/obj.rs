@@ -64,10 +64,9 @@ pub fn size(job: Job) -> f64 {
 /// of its own, with vertices after all others.
 pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -> io::Result<()> {
     let geometry = Geometry::of(surface, simulation);
-    let all: Vec<_> = (0..geometry.vertices as u32).collect();
     let liquid = Liquid::of(simulation, |_| None);
     let has_normals = !(geometry.triangles.is_empty() && liquid.triangles.is_empty());
-    write_vertices(file, &geometry, &all, simulation, has_normals)?;
+    write_vertices(file, &geometry, simulation, has_normals)?;
     if liquid.triangles.is_empty() {
         return Ok(());
     }
@@ -79,18 +78,17 @@ pub fn write(file: &mut dyn Write, surface: &Surface, simulation: &Simulation) -
         writeln!(file, "vn {x} {y} {z}")?;
     }
     for triangle in &liquid.triangles {
-        let [a, b, c] = triangle.map(|i| all.len() + i as usize + 1);
+        let [a, b, c] = triangle.map(|i| geometry.vertices + i as usize + 1);
         writeln!(file, "f {a}//{a} {b}//{b} {c}//{c}")?;
     }
     Ok(())
 }
 
-/// Writes these vertices of the current state, in order, all or none with a normal, as other
-/// programs expect, and then the faces and lines that join them.
-pub fn write_vertices(
+/// Writes the vertices of the current state, all or none with a normal, as other programs expect,
+/// and then the faces and lines that join them.
+fn write_vertices(
     file: &mut dyn Write,
     geometry: &Geometry,
-    kept: &[u32],
     simulation: &Simulation,
     has_normals: bool,
 ) -> io::Result<()> {
@@ -99,32 +97,24 @@ pub fn write_vertices(
     writeln!(file, "# a3: t = {time} s, in m, y is up")?;
     let name = in_a_line(&simulation.scene().name);
     writeln!(file, "o {name}")?;
-    for i in kept {
-        let [x, y, z] = positions[*i as usize];
+    for [x, y, z] in &positions {
         writeln!(file, "v {x} {y} {z}")?;
     }
     if has_normals {
-        let normals = geometry.normals(&positions);
-        for [x, y, z] in kept.iter().map(|i| normals[*i as usize]) {
+        for [x, y, z] in geometry.normals(&positions) {
             writeln!(file, "vn {x} {y} {z}")?;
         }
     }
-    // The numbers of vertices in the file, from 1 on; 0 of those left out.
-    let mut numbers = vec![0; geometry.vertices];
-    for (k, i) in kept.iter().enumerate() {
-        numbers[*i as usize] = k + 1;
-    }
     for triangle in &geometry.triangles {
-        let [a, b, c] = triangle.map(|i| numbers[i as usize]);
+        let [a, b, c] = triangle.map(|i| i + 1);
         writeln!(file, "f {a}//{a} {b}//{b} {c}//{c}")?;
     }
     for line in &geometry.lines {
-        let [a, b] = line.map(|i| numbers[i as usize]);
+        let [a, b] = line.map(|i| i + 1);
         writeln!(file, "l {a} {b}")?;
     }
-    let points = geometry.points.iter().map(|i| numbers[*i as usize]);
-    for number in points.filter(|number| *number > 0) {
-        writeln!(file, "p {number}")?;
+    for point in &geometry.points {
+        writeln!(file, "p {}", point + 1)?;
     }
     Ok(())
 }

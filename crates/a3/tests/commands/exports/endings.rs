@@ -10,7 +10,7 @@ fn exports_that_cannot_be_are_refused_before_the_work() {
     let folder = &Folder::new();
     let long = |more: &str| format!("simulate v 0.01 --until 100 --grid {more}");
     for (words, says) in [
-        ("5x5 --output x.txt", ".json, .csv, .npz, .obj, .pc2, .glb, .usda or .vtu"),
+        ("5x5 --output x.txt", ".json, .csv, .npz, .obj, .glb, .usda or .vtu"),
         ("5x5 --output - --fps 25", "final state"),
         ("5x5 --output - --summary -", "not both"),
         ("5x5 --output x.json --summary s.txt", ".json"),
@@ -19,7 +19,7 @@ fn exports_that_cannot_be_are_refused_before_the_work() {
         ("5x5 --output x-###.obj", "4 digits"),
         ("5x5 --output x.glb", "3001 frames are too many for a .glb, which has at most 600"),
         ("1000x1000 --output x.glb --fps 5", "11.2 GiB, and at most 4 GiB"),
-        ("1000x1000 --output x.pc2", "33.5 GiB, and at most 16 GiB"),
+        ("1000x1000 --output x.usda", "GiB, and at most 16 GiB"),
         ("1000x1000 --output x.npz --fps 5", "22.4 GiB, and at most 4 GiB"),
         ("1000x1000 --output x.csv", "GiB"),
         ("1000x1000 --output x-####.obj", "GiB"),
@@ -44,7 +44,7 @@ fn a_run_that_blows_up_leaves_only_the_whole_files_of_a_sequence() {
         assert_eq!(folder.count(), 0, "{output}");
     }
     // Whole steps for each frame, none shortened.
-    for output in ["x.json", "x.csv", "x.npz", "x.pc2", "x.glb", "x.usda"] {
+    for output in ["x.json", "x.csv", "x.npz", "x.glb", "x.usda"] {
         let line = run(&format!("{output} --fps 25"));
         assert!(
             line.contains("blew up at step") && line.contains("nothing was written; a step of "),
@@ -66,7 +66,7 @@ fn a_run_that_blows_up_leaves_only_the_whole_files_of_a_sequence() {
 #[cfg(unix)]
 fn an_interrupted_export_leaves_nothing() {
     let folder = &Folder::new();
-    for output in ["x.csv", "x.npz", "x.pc2", "x.glb", "x.usda"] {
+    for output in ["x.csv", "x.npz", "x.glb", "x.usda"] {
         let words = format!("simulate v 1e-5 --until 19 --output {output}");
         let child = command(folder, words).spawn().unwrap();
         std::thread::sleep(std::time::Duration::from_millis(400));

@@ -1,4 +1,4 @@
-//! Meshes as OBJ and PC2.
+//! Meshes as OBJ.
 
 use super::{COUNT, ELLIPSE, distance, normals, positions, run, triangles, write};
 use crate::common::{Folder, TEARING, succeed, text};
@@ -71,7 +71,7 @@ fn what_is_torn_is_no_face() {
     let summary: Value = serde_json::from_slice(&summary).unwrap();
     let torn = summary["torn"].as_u64().unwrap();
     assert!(torn > 5, "{torn}");
-    for name in ["f.pc2", "f.glb", "f.usda"] {
+    for name in ["f.glb", "f.usda"] {
         let said = write(name);
         let right = format!("{torn} springs broke, but {name} has one mesh for all its frames");
         assert!(said.starts_with(&right), "{said}");
@@ -105,84 +105,6 @@ fn what_has_no_surface_is_points_and_lines() {
             }
         });
     }
-}
-
-/// By the format's definition: 12 letters, four bytes each of version, points, start, rate and
-/// samples, then the points.
-#[test]
-fn pc2_has_the_positions_of_all_frames() {
-    let folder = &Folder::new();
-    for scene in ["cloth", "chain"] {
-        let said = write(folder, scene, "x.pc2 --fps 25");
-        assert!(said.contains("x.obj"), "{said}");
-        let bytes = folder.bytes("x.pc2");
-        let word = |k: usize| <[u8; 4]>::try_from(&bytes[12 + 4 * k..16 + 4 * k]).unwrap();
-        let n = u32::from_le_bytes(word(1)) as usize;
-        assert_eq!(&bytes[..12], b"POINTCACHE2\0");
-        assert_eq!(u32::from_le_bytes(word(0)), 1);
-        assert_eq!([2, 3].map(|k| f32::from_le_bytes(word(k))), [0.0, 1.0]);
-        assert_eq!(u32::from_le_bytes(word(4)) as usize, COUNT);
-        assert_eq!(bytes.len(), 32 + 12 * n * COUNT);
-        let at = |k: usize, i: usize| {
-            [0, 1, 2].map(|c| f32::from_le_bytes(word(5 + 3 * (k * n + i) + c)))
-        };
-        // The mesh it belongs to has its points in the same order.
-        let obj = folder.read("x.obj");
-        let vertices: Vec<_> = lines(&obj, "v").collect();
-        assert_eq!(vertices.len(), n);
-        run(scene, |k, simulation| {
-            assert_eq!(simulation.particles(), n);
-            for (i, right) in positions(simulation).into_iter().enumerate() {
-                assert_eq!(at(k, i), right);
-                let vertex = [1, 2, 3].map(|c| vertices[i][c].parse::<f32>().unwrap());
-                assert!(k > 0 || vertex == right);
-            }
-        });
-    }
-}
-
-/// Returns the vertices that Blender keeps when it reads an OBJ: those in faces or lines, or all if
-/// there are none.
-fn kept(obj: &str) -> Vec<[f32; 3]> {
-    let all: Vec<[f32; 3]> =
-        lines(obj, "v").map(|words| [1, 2, 3].map(|k| words[k].parse().unwrap())).collect();
-    let corners = lines(obj, "f").chain(lines(obj, "l")).flat_map(|words| {
-        let numbers = words[1..].iter();
-        let numbers = numbers.map(|word| word.split('/').next().unwrap().parse::<usize>().unwrap());
-        numbers.collect::<Vec<_>>()
-    });
-    let used: std::collections::BTreeSet<_> = corners.collect();
-    if used.is_empty() {
-        return all;
-    }
-    used.into_iter().map(|k| all[k - 1]).collect()
-}
-
-/// In every built-in scene, a point cache has the points that the mesh beside it has in Blender.
-#[test]
-fn pc2_moves_the_mesh_that_programs_read() {
-    let folder = &Folder::new();
-    let mut fewer = 0;
-    for entry in a3_scenes::SCENES {
-        let words = format!("simulate --scene {} --until 0.01 --output x.pc2", entry.name);
-        succeed(folder, words);
-        let obj = folder.read("x.obj");
-        let bytes = folder.bytes("x.pc2");
-        let numbers: Vec<_> = bytes[12..].chunks_exact(4).map(|b| b.try_into().unwrap()).collect();
-        let (mesh, count) = (kept(&obj), u32::from_le_bytes(numbers[1]) as usize);
-        assert!(!mesh.is_empty() && mesh.len() == count, "{}", entry.name);
-        for (i, point) in mesh.iter().enumerate() {
-            let at = [0, 1, 2].map(|k| f32::from_le_bytes(numbers[5 + 3 * i + k]));
-            assert_eq!(at, *point, "{}", entry.name);
-        }
-        let setup = entry.build(None).unwrap();
-        fewer += usize::from(count < setup.scene.model.particles());
-        for words in lines(&obj, "f").chain(lines(&obj, "l")) {
-            let number = |word: &&str| word.split('/').all(|n| n.is_empty() || n != "0");
-            assert!(words[1..].iter().all(number), "{}: {words:?}", entry.name);
-        }
-    }
-    assert!(fewer > 2, "{fewer}");
 }
 
 /// Times have no digits from rounding errors.
