@@ -122,13 +122,19 @@ impl Default for Defaults {
 }
 
 impl Defaults {
+    /// Returns the step or tolerance that the scene names for a method, if it names one.
+    #[must_use]
+    pub fn own_control(&self, method: &Method) -> Option<Control> {
+        let is_it = |solver: &Method| std::ptr::eq(solver, method);
+        self.control.filter(|_| self.solver.is_some_and(is_it))
+    }
+
     /// Returns the step or tolerance of a method on this scene: the scene's own, or else the
     /// method's default. If the scene's step is shorter than the default of its solver, the steps
     /// of other methods are shortened in proportion. A scaled step is rounded to two digits.
     #[must_use]
     pub fn control_of(&self, method: &Method) -> Control {
-        let own =
-            self.control.filter(|_| self.solver.is_some_and(|solver| std::ptr::eq(solver, method)));
+        let own = self.own_control(method);
         let scale = self.step_scale
             * match (own, self.control, self.solver.map(|s| s.default_control)) {
                 (None, Some(Control::Step(own)), Some(Control::Step(usual))) => {

@@ -129,7 +129,7 @@ impl RunOptions {
         let solver = request.source.solver_or(self.solver.or(own));
         setup.scene.limits = self.limits.given().or(setup.scene.limits);
         let mut simulation = request.simulate(&setup, solver, self.step)?;
-        let is_asked = self.step.or(request.source.description.step).is_some();
+        let is_asked = self.step.is_some() || setup.defaults.own_control(solver).is_some();
         if !is_asked
             && own.is_none()
             && let Some(usual) = holding::shorten(&mut simulation)

@@ -85,12 +85,9 @@ fn alone(
     let mut origin = origin(request, opening);
     origin.crossed = crossed && !opening.no_contact;
     let mut session = Session::new(origin, &setup, vec![simulation], opening)?;
-    let is_asked = step.is_some() || opening.resume.is_some();
-    let names_none = session.scenes.shown.source.description.step.is_none();
-    if !is_asked
-        && names_none
-        && let Some(why) = session.runs.fit_steps()
-    {
+    let is_named = setup.defaults.own_control(solver).is_some();
+    let is_asked = step.is_some() || opening.resume.is_some() || is_named;
+    if !is_asked && let Some(why) = session.runs.fit_steps() {
         session.readings.say(why);
     }
     session.offer_at_start();
@@ -160,6 +157,8 @@ mod tests {
             let control = as_asked.runs.first().control();
             assert_eq!(control.step(), Some(0.005));
         }
+        // The scene's step is that of its own solver alone.
+        assert!(open(&named, &["rk4"]).runs.panes[0].wanted_step.is_some());
         // A step that holds stays.
         for scene in ["cloth", "jelly", "boxes"] {
             let step = session(&["--scene", scene]).runs.panes[0].wanted_step;
