@@ -81,6 +81,7 @@ pub fn run(args: &[OsString]) -> u8 {
         Err(error) => cli::explain(&error, args),
     };
     let Err(failure) = result else {
+        terminal::tell_notes();
         return 0;
     };
     let code = match failure {

@@ -6,6 +6,7 @@ use a3_core::{Control, Disturbances, Grid, Method, Scene, Simulation, StepLimits
 use a3_files::failure::Failure;
 use a3_files::scene_file::Source;
 use a3_files::setup::{self, Request, SceneOptions};
+use a3_files::terminal;
 use a3_lab::choose::command;
 use a3_scenes::{Defaults, Setup};
 use pyo3::prelude::*;
@@ -178,6 +179,7 @@ impl Opened {
             matches!(made, Made::Built(_)) && given.source.getattr("_backward")?.extract()?;
         let scene = OpenScene { made, options };
         let mut setup = told(py, py.detach(|| scene.build()))?;
+        terminal::tell_notes();
         add_forces(&mut setup.scene, &given.forces, &raised)?;
         Ok(Self {
             calls: scene.is_built() || !given.forces.is_empty(),

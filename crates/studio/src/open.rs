@@ -34,6 +34,7 @@ pub fn open(opening: &Opening, answerer: Answerer) -> Result<(), Failure> {
         // A file of another program or version is not overwritten.
         Settings::read().map_err(|why| terminal::warn(&why)).ok()
     };
+    terminal::tell_notes();
     match app::open(session, opening, files, settings)? {
         End::Closed => Ok(()),
         End::NoWindow(why, session) => run_headless(&why, *session),

@@ -267,4 +267,9 @@ fn a_start_that_does_not_fit_is_told_once() {
     let note = "note: the velocities at the start do not fit the constraints: impulses changed \
                 them by up to 0.6 m/s";
     assert_eq!(said.lines().filter(|line| *line == note).count(), 1, "{said}");
+    // A request that cannot be met ends with one line.
+    let refused = a3(folder, "simulate xpbd --until 1 -o x.json --scene wire.toml");
+    complaint(&refused, 2);
+    let refused = a3(folder, "simulate r --until 1 -o nowhere/x.json --scene wire.toml");
+    complaint(&refused, 1);
 }

@@ -42,8 +42,9 @@ impl RunBar {
 pub struct Bar(ProgressBar);
 
 impl Bar {
-    /// Creates a bar for an expected amount of work.
+    /// Creates a bar for an expected amount of work, and tells the notes on it.
     pub fn new(expected: f64) -> Self {
+        terminal::tell_notes();
         let bar = new_bar();
         bar.enable_steady_tick(Duration::from_millis(250));
         let bar = Self(bar);

@@ -50,12 +50,22 @@ pub fn warn(message: &str) {
     let _ = io::stderr().lock().write_all(line.as_bytes());
 }
 
-/// Writes a note about a scene to standard error, unless this process has done so: commands build a
-/// scene several times.
+/// Notes about scenes that wait to be told, and all of this process.
+static NOTES: Mutex<(Vec<String>, BTreeSet<String>)> = Mutex::new((vec![], BTreeSet::new()));
+
+/// Notes something about a scene, once in this process: commands build a scene several times. It is
+/// told when the work begins, because a request that cannot be met ends with one line.
 pub fn note(message: &str) {
-    static TOLD: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
-    let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
-    if told.insert(message.to_owned()) {
+    let mut notes = NOTES.lock().unwrap_or_else(PoisonError::into_inner);
+    if notes.1.insert(message.to_owned()) {
+        notes.0.push(message.to_owned());
+    }
+}
+
+/// Writes the notes that wait to standard error.
+pub fn tell_notes() {
+    let notes = std::mem::take(&mut NOTES.lock().unwrap_or_else(PoisonError::into_inner).0);
+    for message in notes {
         warn(&format!("note: {message}"));
     }
 }
