@@ -211,7 +211,7 @@ fn of_matter(
     let mut all = vec![("density", Given::Number(density))];
     match kind {
         "Solid" => {
-            all.extend([("young", Given::Number(young)), ("poisson", Given::Number(poisson))])
+            all.extend([("young", Given::Number(young)), ("poisson", Given::Number(poisson))]);
         }
         "Jelly" => {
             let cell = |axis: usize| {

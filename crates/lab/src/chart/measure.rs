@@ -349,7 +349,7 @@ pub fn stiffened(scene: &Scene, factor: f64) -> Result<Scene, Failure> {
     let mut scene = scene.clone();
     match &mut scene.model {
         Model::Network(network) => {
-            network.scale_springs(factor, factor.sqrt()).map_err(Failure::usage)?
+            network.scale_springs(factor, factor.sqrt()).map_err(Failure::usage)?;
         }
         Model::FirstOrder(_) | Model::Points(_) if factor == 1.0 => {}
         Model::FirstOrder(_) | Model::Points(_) => {

@@ -84,7 +84,11 @@ pub fn draw_shape(
     let inside = |radius: f64| share * radius as f32;
     match shape {
         &Shape::Sphere { radius } => {
-            balls.push(Ball { center: to_f32(place), radius: inside(radius), color: paint.first() })
+            balls.push(Ball {
+                center: to_f32(place),
+                radius: inside(radius),
+                color: paint.first(),
+            });
         }
         &Shape::Box { half_extents, axes } => {
             let least = half_extents.min();

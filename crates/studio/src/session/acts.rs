@@ -140,7 +140,7 @@ impl Session {
                     self.report(done);
                 }
                 None => {
-                    self.readings.say(format!("There are {} solvers.", integrators::METHODS.len()))
+                    self.readings.say(format!("There are {} solvers.", integrators::METHODS.len()));
                 }
             },
             RunAction::LongerStep | RunAction::ShorterStep => {
