@@ -41,6 +41,12 @@ pub(crate) struct Least {
 impl Least {
     /// Conditions at the start of a run: every rope that is at its length rebounds.
     pub const AT_START: Self = Self { none: 0.0, height: 0.0, time: 0.0, rebounds: true };
+
+    /// Returns the speed (m/s) at which nothing moves farther than what counts as zero in the time
+    /// up to which rebounds are left out.
+    fn still(&self) -> f64 {
+        if self.time > 0.0 { self.none / self.time } else { 0.0 }
+    }
 }
 
 /// Largest change of a velocity, over the fastest one, that is left to the feedback of the
@@ -68,7 +74,7 @@ pub(crate) fn fit(network: &mut Network, t: f64, y: &mut [f64], least: Least) ->
     network.hold(t, y);
     loosen_where(network, y, |rate| rate > 0.0);
     let mut all = Jump::default();
-    all.add(strike(network, (t, &before), y, &[]));
+    all.add(strike(network, (t, &before), y, &[], least));
     if let Some(tightened) = tighten(network, t, y, least) {
         all.add(tightened);
     }
@@ -86,9 +92,9 @@ fn loosen_where(network: &mut Network, y: &[f64], is_loose: impl Fn(f64) -> bool
 }
 
 /// Makes the taut ropes slack, and leaves the ends of joints, whose ends clearly approach in the
-/// state y.
-fn loosen_approaching(network: &mut Network, y: &[f64]) {
-    let none = MAX_DRIFT * fastest(network, y);
+/// state y: faster than that speed (m/s), and beside the fastest motion.
+fn loosen_approaching(network: &mut Network, y: &[f64], still: f64) {
+    let none = still.max(MAX_DRIFT * fastest(network, y));
     loosen_where(network, y, |rate| rate < -none);
 }
 
@@ -122,7 +128,7 @@ pub(crate) fn tighten(network: &mut Network, t: f64, y: &mut [f64], least: Least
         });
         let struck: Vec<_> = speeds.collect();
         let before = network.halves(y).1.to_vec();
-        let jump = strike(network, (t, &before), y, &struck);
+        let jump = strike(network, (t, &before), y, &struck, least);
         all.get_or_insert_default().add(jump);
     }
     all
@@ -173,8 +179,10 @@ fn strike(
     (t, before): (f64, &[f64]),
     y: &mut [f64],
     struck: &[Struck],
+    least: Least,
 ) -> Jump {
     let n = network.particles();
+    let speed = fastest(network, y);
     let mut all = std::mem::take(&mut network.constraints);
     let pushed = pushed(network, &mut all, y, struck);
     network.constraints = all;
@@ -185,7 +193,7 @@ fn strike(
             Moved::Nothing | Moved::Particle(_) => pushed.change.norm(),
         });
     }
-    if struck.is_empty() && jump.change <= MAX_DRIFT * fastest(network, y) {
+    if struck.is_empty() && jump.change <= MAX_DRIFT * speed {
         jump.change = 0.0;
     } else {
         let v = &y[3 * n..6 * n];
@@ -199,15 +207,19 @@ fn strike(
         add(network, &pushed, y);
         network.hold(t, y);
     }
-    // A rope does not push: it lets its ends approach.
-    loosen_approaching(network, y);
+    // A rope does not push: it lets its ends approach. Where everything comes to rest, rounding
+    // errors are small beside what moved before, and not beside what is left.
+    loosen_approaching(network, y, least.still().max(MAX_DRIFT * speed));
     jump
 }
 
-/// Returns the largest component of a velocity (m/s) in the state y.
+/// Returns the largest component of a velocity (m/s) in the state y, of bodies also at their
+/// radius.
 fn fastest(network: &Network, y: &[f64]) -> f64 {
-    let v = network.halves(y).1.iter();
-    v.fold(0.0, |most: f64, v| most.max(v.abs()))
+    let bodies = network.bodies().iter().enumerate();
+    let turning = bodies.map(|(k, body)| turned(network, k, y).1.amax() * body.radius());
+    let v = network.halves(y).1.iter().map(|v| v.abs());
+    v.chain(turning).fold(0.0, f64::max)
 }
 
 /// Returns the effects of the impulses of constraints on the velocities in the state y, where these
@@ -331,7 +343,7 @@ pub(crate) fn slacken(network: &mut Network, t: f64, y: &[f64]) -> u64 {
     if !has_ropes(network) {
         return 0;
     }
-    loosen_approaching(network, y);
+    loosen_approaching(network, y, 0.0);
     let_go(network, t, y)
 }
 

@@ -319,7 +319,8 @@ pub(super) enum EventKind {
     /// A particle touches an obstacle, or reaches an outflow: their numbers. Outflows follow all
     /// obstacles.
     Touch { particle: usize, body: usize },
-    /// A particle that rests on an obstacle sank deeper into it than allowed.
+    /// A particle that rests on an obstacle sank deeper into it than allowed, or a joint that
+    /// leaves its end passed it: the step is too long.
     Sunk,
     /// A particle ceases to stick or slide on an obstacle as it did, or a rope slackens.
     Rested,

@@ -197,7 +197,15 @@ fn first_stop(
     let share = first_negative(end, &mut margin)?;
     state.resize(network.dim(), 0.0);
     state_at(share, state);
-    Some(Event { share, kind: EventKind::Rested })
+    // Where a joint passes its end although its velocity leads away, the step is too long for the
+    // flight that begins with it: the polynomial has the velocity of a later time.
+    let now = open_ends(network, state);
+    let passes = |(begun, now): (&OneSided, &OneSided)| {
+        begun.value > -none && now.value >= passed(begun.value) && now.rate < 0.0
+    };
+    let is_flight = begun.iter().zip(&now).any(passes);
+    let kind = if is_flight { EventKind::Sunk } else { EventKind::Rested };
+    Some(Event { share, kind })
 }
 
 /// Finds where a taut rope slackens before the share `before` of a step of h (s) from t (s), on the

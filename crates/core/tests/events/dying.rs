@@ -117,3 +117,60 @@ fn nystrom_pairs_refuse_friction() {
         assert!(refuses(CASES[0].scene) && !refuses(&smooth), "{name}");
     }
 }
+
+/// Sliders that a force drives to their ends, and masses that fall on ropes, each of which rebounds
+/// in ever shorter flights: two at a time, of which one is at rest before the other.
+#[test]
+fn two_things_come_to_rest_at_their_ends() {
+    let slider = |k: usize, restitution: f64, force: f64| {
+        format!(
+            "[[body]]\nparts = [{{ ball = 0.1 }}]\nmass = 1.5\nat = [{}, 0, 0]\n[[joint]]\nbody = {k}\n\
+             slider = {{ axis = [0, 1, 0], limits = [-1, 0.3], restitution = {restitution}, force = {force} }}\n",
+            2 * k
+        )
+    };
+    let sliders = [slider(0, 0.41, 5.7), slider(1, 0.49, 7.5)].concat();
+    let hinge = |k: usize, restitution: f64, limit: f64| {
+        format!(
+            "[[body]]\nparts = [{{ box = [0.6, 0.1, 0.1] }}]\nmass = 1\nat = [{}, 0, 0]\n[[joint]]\nbody = {k}\n\
+             hinge = {{ at = [{}, 0, 0], axis = [0, 0, 1], limits = [{limit}, 1], restitution = {restitution} }}\n",
+            2.0 * k as f64 + 0.3,
+            2 * k
+        )
+    };
+    let hinges =
+        ["gravity = [0, -9.81, 0]\n", &hinge(0, 0.5, -0.3), &hinge(1, 0.37, -0.3)].concat();
+    let rope = |i: usize, restitution: f64| {
+        format!(
+            "[[constraint]]\nrope = [{i}, {}]\nlength = 0.6\nrestitution = {restitution}\n",
+            i + 1
+        )
+    };
+    let ropes = format!(
+        "gravity = [0, -9.81, 0]\n[particles]\npositions = [[0, 0, 0], [0, -0.1, 0], [1, 0, 0], [1, -0.3, 0]]\n\
+         mass = 1\npin = [{{ particles = [0, 2] }}]\n{}{}",
+        rope(0, 0.5),
+        rope(2, 0.15)
+    );
+    let runs = [
+        ("rk4", 0.01),
+        ("verlet", 0.005),
+        ("trapezoid", 0.005),
+        ("dopri5", 1e-5),
+        ("dop853", 1e-6),
+        ("verner65", 1e-5),
+        ("bdf", 1e-4),
+    ];
+    for (name, value) in runs {
+        for scene in [&sliders, &hinges, &ropes] {
+            let method = method(name);
+            let mut run = Simulation::new(described(scene), method, method.control(value)).unwrap();
+            run.advance_to(4.0).unwrap();
+            let speeds = run.velocities();
+            let fastest = speeds.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+            assert!(fastest < 1e-6, "{name} moves at {fastest:e} m/s in\n{scene}");
+            let evaluations = run.work().evaluations;
+            assert!(evaluations < 60_000, "{name} takes {evaluations} evaluations in\n{scene}");
+        }
+    }
+}
