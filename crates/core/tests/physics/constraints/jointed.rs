@@ -220,7 +220,7 @@ const CRANK: [f64; 2] = [8.553_989_261_8, 14.271_053_112_6];
 /// Its four hinges have three equations too many.
 #[test]
 fn a_four_bar_linkage_moves_as_by_its_crank_alone() {
-    let scene = linkage();
+    let scene = linkage([0.0, -G, 0.0]);
     let [angle, rate] = CRANK;
     for (name, value, most) in [("dop853", 1e-10, 1e-7), ("rk4", 1e-3, 1e-5)] {
         let run = simulated(&scene, name, value, 0.8);
@@ -232,8 +232,23 @@ fn a_four_bar_linkage_moves_as_by_its_crank_alone() {
     }
 }
 
+/// Stages of implicit methods miss the constraints a little, and the equations that are too many
+/// then contradict the others: not only in the plane of the linkage, where a load acts across it.
+#[test]
+fn implicit_methods_move_a_linkage_under_an_oblique_load() {
+    let scene = linkage([-3.0, -8.0, 5.0]);
+    let exact = simulated(&scene, "dop853", 1e-10, 0.3);
+    for (name, value, most) in
+        [("implicit", 2e-3, 0.02), ("implicit-midpoint", 5e-3, 2e-3), ("tr-bdf2", 5e-3, 2e-3)]
+    {
+        let run = simulated(&scene, name, value, 0.3);
+        let off = (run.position(0) - exact.position(0)).norm();
+        assert!(off < most, "{name}: {off:e}");
+    }
+}
+
 /// Crank of 0.4 m from the origin, upright; coupler of 1 m; rocker of 0.8 m from (0.9, 0).
-fn linkage() -> Scene {
+fn linkage(gravity: [f64; 3]) -> Scene {
     let (a, d) = (vector(0.0, 0.4, 0.0), vector(0.9, 0.0, 0.0));
     let between = d - a;
     let l = between.norm();
@@ -254,7 +269,7 @@ fn linkage() -> Scene {
         )
     });
     described(&format!(
-        "gravity = [0, -{G}, 0]\n{}
+        "gravity = {gravity:?}\n{}
         [[joint]]
         body = 0
         hinge = {{ at = [0, 0, 0], axis = [0, 0, 1], torque = 3 }}
