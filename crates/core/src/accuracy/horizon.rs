@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::frames::GoOn;
+use super::snapshot::{Scope, Snapshot};
 use crate::control::Control;
 use crate::error::Error;
 use crate::failure::succeeded;
@@ -28,7 +29,8 @@ const MAX_HALVINGS: u32 = 6;
 /// Growth of the Lyapunov time, when the step is halved, from which on it is the step that
 /// separates two runs.
 const MIN_CALMING: f64 = 1.5;
-/// Largest displacement of a coordinate between the two runs at the start, over the scene's radius.
+/// Largest displacement of a coordinate between the two runs at the start, over the scene's radius;
+/// of a plain number, over its own size.
 const SEPARATION: f64 = 1e-8;
 /// Tolerance of runs that take one, over the separation: their errors part them by less.
 const TOLERANCE_SHARE: f64 = 0.1;
@@ -138,11 +140,26 @@ impl TwoRuns {
         let n = run.model().coordinates();
         let mut random = SplitMix(2);
         let mut beside = scene.clone();
-        let size = SEPARATION * run.extent().1;
+        let last = ROUND_TIMES[ROUND_TIMES.len() - 1];
+        let unit = match run.model().network() {
+            None if longest < ROUND_TIMES[0] || longest > last => longest / last,
+            _ => 1.0,
+        };
+        let is_plain = run.particles() == 0;
+        let mut seen = Snapshot::of(&scene.model, 0.0, &scene.state);
+        let mut sizes = vec![run.extent().1; n];
+        if is_plain {
+            let first = ROUND_TIMES[0] * unit / f64::from(CHECKS_PER_ROUND);
+            let own = seen.sizes_until(first);
+            // Of numbers that all rest at 0, nothing tells the size.
+            if own.iter().any(|size| *size > 0.0) {
+                sizes = own;
+            }
+        }
         for (k, x) in beside.state[..n].iter_mut().enumerate() {
             let network = scene.model.network();
             if !network.is_some_and(|network| network.is_pinned(k % (n / 3))) {
-                *x += size * random.between(-1.0, 1.0);
+                *x += SEPARATION * sizes[k] * random.between(-1.0, 1.0);
             }
         }
         let mut beside = Simulation::new(beside, method, control)?;
@@ -151,18 +168,21 @@ impl TwoRuns {
             squares.sum::<f64>().sqrt()
         };
         let norm = |y: &[f64]| y[..n].iter().map(|y| y * y).sum::<f64>().sqrt();
-        let first = distance(run.state(), beside.state());
+        // Plain numbers are compared as in charts, each over its own size.
+        let mut apart = |time: f64, [a, b]: [&[f64]; 2]| {
+            if !is_plain {
+                return distance(a, b);
+            }
+            seen = seen.next(&scene.model, time, a);
+            seen.errors_of(&Snapshot::of(&scene.model, time, b), Scope::default()).state
+        };
+        let first = apart(0.0, [run.state(), beside.state()]);
         // Numbers that grow from a small start have errors of the size to which they grow.
         let errors = match control {
             Control::Tolerance(tolerance) => tolerance / TOLERANCE_SHARE,
             Control::Step(_) => 0.0,
         };
-        let mut largest = norm(run.state());
-        let last = ROUND_TIMES[ROUND_TIMES.len() - 1];
-        let unit = match run.model().network() {
-            None if longest < ROUND_TIMES[0] || longest > last => longest / last,
-            _ => 1.0,
-        };
+        let mut largest = if is_plain { 1.0 } else { norm(run.state()) };
         let rounds = ROUND_TIMES.map(|t| t * unit).into_iter();
         let rounds = rounds.filter(|t| *t < longest);
         let (mut until, mut motion) = (ROUND_TIMES[0] * unit, 0.0f64);
@@ -179,9 +199,11 @@ impl TwoRuns {
                     parted_at = Some(time);
                     break 'rounds;
                 }
-                largest = largest.max(norm(run.state()));
+                if !is_plain {
+                    largest = largest.max(norm(run.state()));
+                }
                 let least = first.max(errors * largest);
-                most = most.max(distance(run.state(), beside.state()) / least);
+                most = most.max(apart(time, [run.state(), beside.state()]) / least);
                 let count = match run.particles() {
                     0 => n,
                     particles => particles,

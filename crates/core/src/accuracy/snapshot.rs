@@ -167,6 +167,12 @@ impl Snapshot {
         next
     }
 
+    /// Returns the size of each number, or of its change within a time (s) if that is larger.
+    pub fn sizes_until(&self, time: f64) -> Vec<f64> {
+        let rates = self.positions.iter().zip(&self.velocities);
+        rates.map(|(y, rate)| y.abs().max((rate * time).abs())).collect()
+    }
+
     /// Returns the snapshot at time t (s) if nothing moves any more.
     pub fn still(&self, t: f64) -> Self {
         Self { impact: self.impact.still(t, self.penetration > 0.0), ..self.clone() }

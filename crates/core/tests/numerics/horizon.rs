@@ -90,3 +90,26 @@ fn growth_from_a_small_start_is_no_chaos() {
         assert!(found.lyapunov.is_infinite() && found.growth < 2.0, "{unit:e}: {found:?}");
     }
 }
+
+/// Hares and foxes that turn in a cycle: in other units, their numbers are predictable as long, and
+/// an epidemic, too.
+#[test]
+fn numbers_of_any_size_are_as_predictable() {
+    for [hares, foxes] in [[1.0, 1.0], [1e4, 1e-2], [1e-6, 1e9]] {
+        let cycle = move |_t: f64, y: &[f64], dydt: &mut [f64]| {
+            dydt[0] = y[0] * (1.0 - y[1] / foxes);
+            dydt[1] = y[1] * (y[0] / hares - 1.0);
+        };
+        let cycle =
+            Scene::new("cycle", Ode::new(2, cycle).unwrap(), vec![0.5 * hares, 0.5 * foxes]);
+        let found = horizon(&cycle, f64::INFINITY, &|| true).unwrap().unwrap();
+        assert!(found.until == 10.0 && found.growth < 10.0, "{hares} {foxes}: {found:?}");
+    }
+    let epidemic = |_t: f64, y: &[f64], dydt: &mut [f64]| {
+        let (caught, healed) = (0.5e-7 * y[0] * y[1], 0.1 * y[1]);
+        dydt.copy_from_slice(&[-caught, caught - healed, healed]);
+    };
+    let epidemic = Scene::new("epidemic", Ode::new(3, epidemic).unwrap(), vec![1e7, 1.0, 0.0]);
+    let found = horizon(&epidemic, 120.0, &|| true).unwrap().unwrap();
+    assert!(found.until == 120.0 && found.lyapunov.is_infinite(), "{found:?}");
+}

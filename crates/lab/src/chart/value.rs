@@ -335,9 +335,10 @@ pub fn look_ahead(
     };
     match asked {
         Some(asked) if asked > until * (1.0 + 1e-9) && lyapunov.is_finite() => {
+            let what = if network.is_some() { "an error in position" } else { "an error" };
             monitor.warn(&format!(
-                "warning: {of}: {why}: past {until} s an error in position says little: compare the \
-                 energy, or leave out --until"
+                "warning: {of}: {why}: past {until} s {what} says little: compare the energy, or \
+                 leave out --until"
             ));
         }
         Some(_) => {}
@@ -350,6 +351,15 @@ pub fn look_ahead(
 pub fn check_motion(scene: &Scene, horizon: &Horizon) -> Result<(), Failure> {
     if horizon.motion > 0.0 {
         return Ok(());
+    }
+    let system = scene.model.system();
+    let mut rates = vec![0.0; system.dim()];
+    system.eval_f(0.0, &scene.state, &mut rates);
+    if let Some(k) = rates.iter().position(|rate| !rate.is_finite()) {
+        return Err(Failure::usage(format!(
+            "the rate of change of number {k} of {} is not finite at its start",
+            scene.name
+        )));
     }
     Err(Failure::usage(format!(
         "nothing moves in {} within {} s, so there are no errors to measure: give something a velocity or a force, or \
