@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use crate::elements::{Sheet, Wind};
-use crate::error::Error;
+use crate::error::{Error, positive};
 use crate::geometry::Shape;
 use crate::grid::Grid;
 use crate::integrators::Tolerance;
@@ -329,8 +329,8 @@ impl Scene {
     /// Returns the errors that a step may make under a relative tolerance.
     ///
     /// # Errors
-    /// The tolerance, or the scene's absolute one, is not a finite number above 0, or the system
-    /// has [scales](ParticleSystem::scales) in place of an absolute one.
+    /// The tolerance, the scene's absolute one or its longest step is not a finite number above 0,
+    /// or the system has [scales](ParticleSystem::scales) in place of an absolute one.
     pub fn tolerance(&self, relative: f64) -> Result<Tolerance, Error> {
         let own = || {
             let size = self.extent().1;
@@ -343,6 +343,9 @@ impl Scene {
             let why = "errors are relative to the scales of the system: leave out the scales, or \
                        the absolute tolerance";
             return Err(Error::Invalid(why.into()));
+        }
+        if let Some(longest) = self.limits.max_step {
+            positive("the longest step", longest)?;
         }
         let absolute = self.limits.absolute.unwrap_or_else(own);
         Tolerance::with_absolute(relative, absolute)

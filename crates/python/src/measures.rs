@@ -156,8 +156,11 @@ pub fn chart(
 /// setting is not larger, and a command.
 type Chosen = (&'static str, f64, f64, f64, f64, &'static str, Option<String>);
 
-/// Chooses methods. Returns them, the name of the error, the end of the runs (s), and the
-/// uncertainty of the reference.
+/// Methods, the end of the runs (s), the uncertainty of the reference, the errors of the best run
+/// at the ends of its steps and anywhere, and words if the latter is larger than was asked.
+type Choices = (Vec<Chosen>, f64, f64, [f64; 2], String);
+
+/// Chooses methods.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "each is an option")]
 pub fn choose(
@@ -172,7 +175,7 @@ pub fn choose(
     particle: Option<usize>,
     at_end: bool,
     timed: bool,
-) -> PyResult<(Vec<Chosen>, &'static str, f64, f64)> {
+) -> PyResult<Choices> {
     let goal = match (error, budget) {
         (Some(error), None) => Goal::Error(error),
         (None, Some(budget)) => Goal::Budget(budget),
@@ -212,7 +215,8 @@ pub fn choose(
         )
     };
     let found = choice.found.iter().map(chosen).collect();
-    Ok((found, choice.metric.name(), choice.until, choice.floor))
+    let words = a3_lab::choose::holds(goal, &choice);
+    Ok((found, choice.until, choice.floor, choice.shown, words))
 }
 
 /// Measured limits.

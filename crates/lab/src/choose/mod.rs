@@ -3,5 +3,5 @@
 mod report;
 mod value;
 
-pub use report::{command, report};
+pub use report::{command, holds, report};
 pub use value::{Choice, ChooseOptions, Chosen, Goal, choose};

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use a3_core::accuracy::{Scope, SetBy};
+use a3_core::accuracy::{Metric, Scope, SetBy};
 use a3_core::{Control, Disturbances, Method, Scene};
 use a3_files::report::{Report, headings};
 use a3_files::setup::{Request, SceneOptions};
@@ -33,7 +33,8 @@ fn set_by(best: &Chosen) -> String {
 }
 
 /// Says where the error of the best run holds, if it does not hold at all times.
-fn holds(goal: Goal, choice: &Choice) -> String {
+#[must_use]
+pub fn holds(goal: Goal, choice: &Choice) -> String {
     let best = choice.best();
     let most = match goal {
         Goal::Error(error) => error,
@@ -43,17 +44,18 @@ fn holds(goal: Goal, choice: &Choice) -> String {
     if anywhere <= most {
         return String::new();
     }
+    let is_plain = choice.metric == Metric::State;
+    let frames = if is_plain { "240 times" } else { "60 frames a second" };
     let place = match best.control {
-        Control::Tolerance(_) => "at 60 frames a second; between them",
-        Control::Step(_) if at_ends <= most => "at the ends of steps; between them",
-        Control::Step(_) => {
-            "at 60 frames a second, interpolated through the ends of three steps or at the nearest end; elsewhere"
-        }
+        Control::Tolerance(_) => format!("at {frames}; between them"),
+        Control::Step(_) if at_ends <= most => "at the ends of steps; between them".into(),
+        Control::Step(_) => format!(
+            "at {frames}, interpolated through the ends of three steps or at the nearest end; elsewhere"
+        ),
     };
+    let shown = if is_plain { "as runs" } else { "as films, data and the window" };
     let unit = unit(choice.metric);
-    format!(
-        "the error holds {place}, as films, data and the window show them, it is up to {anywhere:.1e} {unit}\n"
-    )
+    format!("the error holds {place}, {shown} show them, it is up to {anywhere:.1e} {unit}\n")
 }
 
 /// Creates the table of candidates, with the computing times of their frames (ms). Below it is what

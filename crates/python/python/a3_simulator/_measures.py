@@ -6,6 +6,7 @@ import copy
 import functools
 import json
 import os
+import warnings
 from dataclasses import dataclass, field
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
@@ -208,6 +209,9 @@ class Choice:
     floor: float
     #: The methods that are next best.
     others: List["Choice"] = field(default_factory=list, repr=False)
+    #: Largest error at the ends of fixed steps, and of the states that a run returns at any time; `None` for `others`.
+    error_at_steps: Optional[float] = None
+    error_anywhere: Optional[float] = None
 
 
 class Limits(NamedTuple):
@@ -431,14 +435,16 @@ def choose(
     scene_given = given(measured, **options)
     one = _only(scene, particle, component)
     timed = _timed(work)
-    found, _, end, floor = _work(
+    found, end, floor, shown, words = _work(
         lambda monitor: _a3.choose(
             scene_given, names, monitor, error, budget, of, end, one, at_end, timed
         ),
         progress,
     )
+    if words:
+        warnings.warn(words.strip(), stacklevel=2)
     others = [Choice(*row, sign * end, floor) for row in found[1:]]
-    return Choice(*found[0], sign * end, floor, others)
+    return Choice(*found[0], sign * end, floor, others, *shown)
 
 
 def stability(
