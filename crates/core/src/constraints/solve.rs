@@ -83,8 +83,7 @@ impl System {
 
     /// Writes W J^T lambda, the changes by the multipliers, to the vectors.
     pub fn spread(&mut self) {
-        transpose(&self.rows, |row| row.multiplier, &mut self.vectors);
-        weigh(&self.weights, &mut self.vectors);
+        spread(&self.rows, &self.weights, &mut self.vectors);
     }
 
     /// Solves by a factorisation of A. Returns whether that succeeded.
@@ -104,12 +103,8 @@ impl System {
         }
         for _ in 0..2 {
             factor.solve(&mut self.rows);
-            transpose(&self.rows, |row| row.multiplier, &mut self.vectors);
-            weigh(&self.weights, &mut self.vectors);
-            let vectors = &self.vectors;
-            each(&mut self.rows, &|_, row| {
-                row.residual = row.target - row.product(vectors);
-            });
+            spread(&self.rows, &self.weights, &mut self.vectors);
+            find_residuals(&mut self.rows, &self.vectors);
         }
         true
     }
@@ -126,12 +121,8 @@ impl System {
         }
         for _ in 0..PROXIMAL_STEPS {
             self.correct(PROXIMAL_SOFTNESS);
-            transpose(&self.rows, |row| row.multiplier, &mut self.vectors);
-            weigh(&self.weights, &mut self.vectors);
-            let vectors = &self.vectors;
-            each(&mut self.rows, &|_, row| {
-                row.residual = row.target - row.product(vectors);
-            });
+            self.spread();
+            find_residuals(&mut self.rows, &self.vectors);
         }
     }
 
@@ -180,6 +171,17 @@ impl System {
             }
         }
     }
+}
+
+/// Writes W J^T lambda to u.
+fn spread(rows: &[Row], weights: &[Vector3<f64>], u: &mut [Vector3<f64>]) {
+    transpose(rows, |row| row.multiplier, u);
+    weigh(weights, u);
+}
+
+/// Finds the residuals b - A lambda of rows from u = W J^T lambda.
+fn find_residuals(rows: &mut [Row], u: &[Vector3<f64>]) {
+    each(rows, &|_, row| row.residual = row.target - row.product(u));
 }
 
 /// Writes J^T times a vector to `out`; `of` returns the vector's element of each row.
