@@ -465,6 +465,27 @@ def test_one_number_counts_alone():
         a3.choose("chain", 1e-3, component=2)
 
 
+def test_a_choice_tells_where_its_error_holds():
+    """Between the ends of the long steps of a stiff system, a run shows straight lines."""
+
+    def follow(t, y):
+        return -1e4 * (y - np.cos(t))
+
+    with pytest.warns(UserWarning, match="the error holds at the ends of steps; between them"):
+        choice = a3.choose(a3.System(follow, [1.0]), 1e-3, methods=["tr-bdf2"], until=3.0, progress=False)
+    assert choice.error <= 1e-3 and choice.error_at_steps <= 1e-3
+    times = np.linspace(0, 3, 961)
+    states = a3.Simulation(a3.System(follow, [1.0]), "tr-bdf2", step=choice.setting).states_at(times)
+    worst = np.abs(states[:, 0] - np.cos(times)).max()
+    assert 10 * choice.error < worst == pytest.approx(choice.error_anywhere, rel=0.05)
+
+
+@pytest.mark.parametrize("longest", [0.0, -1.0, math.nan])
+def test_a_longest_step_is_above_0(longest):
+    with pytest.raises(a3.InputError, match="the longest step"):
+        a3.Simulation(a3.System(lambda t, y: -y, [1.0]), "dopri5", max_step=longest)
+
+
 def test_a_function_of_the_state_counts():
     """The radius of a turn falls by |1 + z + z^2 / 2 + z^3 / 6 + z^4 / 24|, z = ih, in each step of RK4."""
 
