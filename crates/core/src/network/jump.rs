@@ -92,7 +92,7 @@ fn loosen_where(network: &mut Network, y: &[f64], is_loose: impl Fn(f64) -> bool
 }
 
 /// Makes the taut ropes slack, and leaves the ends of joints, whose ends clearly approach in the
-/// state y: faster than that speed (m/s), and beside the fastest motion.
+/// state y: faster than `still` (m/s), and than a small share of the fastest velocity.
 fn loosen_approaching(network: &mut Network, y: &[f64], still: f64) {
     let none = still.max(MAX_DRIFT * fastest(network, y));
     loosen_where(network, y, |rate| rate < -none);
@@ -208,7 +208,7 @@ fn strike(
         network.hold(t, y);
     }
     // A rope does not push: it lets its ends approach. Where everything comes to rest, rounding
-    // errors are small beside what moved before, and not beside what is left.
+    // errors are small beside the velocities before the impact, but not beside those after it.
     loosen_approaching(network, y, least.still().max(MAX_DRIFT * speed));
     jump
 }

@@ -118,8 +118,9 @@ fn nystrom_pairs_refuse_friction() {
     }
 }
 
-/// Sliders that a force drives to their ends, and masses that fall on ropes, each of which rebounds
-/// in ever shorter flights: two at a time, of which one is at rest before the other.
+/// Two sliders that a force drives to their ends, two bars that fall onto the ends of their hinges,
+/// and two masses that fall until their ropes tighten. Each rebounds in ever shorter flights, and
+/// one of the two is at rest before the other.
 #[test]
 fn two_things_come_to_rest_at_their_ends() {
     let slider = |k: usize, restitution: f64, force: f64| {
