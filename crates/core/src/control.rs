@@ -66,8 +66,46 @@ impl Control {
 impl fmt::Display for Control {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Step(step) => write!(f, "step {step} s"),
+            Self::Step(step) => write!(f, "step {}", StepLength(*step)),
             Self::Tolerance(tolerance) => write!(f, "tolerance {tolerance:e}"),
+        }
+    }
+}
+
+/// Step (s) as people write it: `0.005 s`, `1/60 s` in place of all its digits, or `0.06 ms`.
+#[derive(Clone, Copy, Debug)]
+pub struct StepLength(pub f64);
+
+impl fmt::Display for StepLength {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (decimal, rate) = (self.0.to_string(), 1.0 / self.0);
+        if decimal.len() > 10 && (rate - rate.round()).abs() < 1e-9 * rate {
+            write!(f, "1/{} s", rate.round())
+        } else if self.0 < 1e-3 {
+            let digits = format!("{:.9e}", 1e3 * self.0);
+            write!(f, "{} ms", digits.parse::<f64>().unwrap_or(1e3 * self.0))
+        } else {
+            write!(f, "{decimal} s")
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::StepLength;
+
+    #[test]
+    fn steps_are_written_as_people_write_them() {
+        for (step, words) in [
+            (0.005, "0.005 s"),
+            (1.0 / 60.0, "1/60 s"),
+            (0.016_666_666_666_666_7, "1/60 s"),
+            (0.001_234_567_890_123, "0.001234567890123 s"),
+            (6e-5, "0.06 ms"),
+            (1.0 / 30_000.0, "1/30000 s"),
+            (1e-7, "0.0001 ms"),
+        ] {
+            assert_eq!(StepLength(step).to_string(), words);
         }
     }
 }

@@ -98,7 +98,7 @@ mod views;
 mod work;
 
 pub use constraints::Constraint;
-pub use control::Control;
+pub use control::{Control, StepLength};
 pub use coupling::{
     AxialCoupling, BlockCoupling, Coupling, Diagonal, GeneralCoupling, Matrix, RankOneCoupling,
 };

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use a3_core::stability::{Budget, Mode, largest_step, spectrum};
-use a3_core::{BlowUp, Cause, Control, Rounded, Simulation};
+use a3_core::{BlowUp, Cause, Control, Rounded, Simulation, StepLength};
 
 use crate::bounds::{LARGEST_STEP, SMALLEST_STEP};
 use crate::processor;
@@ -74,7 +74,7 @@ impl Sought {
 /// Returns the words for a step or a tolerance.
 fn named(control: Control) -> String {
     match control {
-        Control::Step(step) => format!("a step of {step} s"),
+        Control::Step(step) => format!("a step of {}", StepLength(step)),
         Control::Tolerance(tolerance) => format!("a tolerance of {tolerance:e}"),
     }
 }

@@ -4,7 +4,7 @@
 use std::cell::Cell;
 use std::time::Duration;
 
-use a3_core::{Cause, Control, Error, Rounded, Scene, Simulation, Unmet, Vector3};
+use a3_core::{Cause, Control, Error, Rounded, Scene, Simulation, StepLength, Unmet, Vector3};
 
 use super::failure::Failure;
 use super::holding::{self, Sought};
@@ -83,7 +83,7 @@ fn inside(scene: &Scene) -> Option<String> {
 /// Warns on stderr of energy that nothing put into a run, and of constraints that it did not meet.
 pub fn warn(run: &Simulation) {
     let (what, better) = match run.control() {
-        Control::Step(step) => (format!("the step of {step} s"), "shorter"),
+        Control::Step(step) => (format!("the step of {}", StepLength(step)), "shorter"),
         Control::Tolerance(tolerance) => (format!("the tolerance of {tolerance:e}"), "smaller"),
     };
     if let Some(gain) = run.gained() {

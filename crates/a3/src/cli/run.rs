@@ -2,7 +2,7 @@
 //! and costs.
 
 use a3_core::accuracy::{Metric, Scope};
-use a3_core::{Disturbances, Grid, Method, StepLimits};
+use a3_core::{Disturbances, Grid, Method, StepLength, StepLimits};
 use a3_files::arguments::{absolute, grid, max_step, particle, step, threads};
 use a3_files::failure::Failure;
 use a3_files::setup::{Request, Run, SceneOptions};
@@ -134,9 +134,9 @@ impl RunOptions {
             && own.is_none()
             && let Some(usual) = holding::shorten(&mut simulation)
         {
-            let step = simulation.control().value();
+            let [step, usual] = [simulation.control().value(), usual].map(StepLength);
             terminal::note(&format!(
-                "step {step} s: a longer one, such as the default {usual} s, would not hold"
+                "step {step}: a longer one, such as the default {usual}, would not hold"
             ));
         }
         Ok(Run { request, simulation, presentation: setup.presentation, until })

@@ -1,6 +1,6 @@
 //! The text over the picture: the readings of one pane or of several, and the help.
 
-use a3_core::Simulation;
+use a3_core::{Simulation, StepLength};
 use a3_media::show;
 use egui::{Align2, Area, Context, Frame, Grid, Id, Label, Margin, Rect, Ui, vec2};
 
@@ -288,7 +288,7 @@ fn caption(ui: &mut Ui, pane: &Pane, readings: &Readings, size: layout::Text) {
     });
     let step = match words::steps(run) {
         Some(steps) => ("steps", text(format!("{},  {steps}", run.control()))),
-        None => ("step", text(format!("{} s", words::seconds(run.control().value())))),
+        None => ("step", text(StepLength(run.control().value()).to_string())),
     };
     let time = ("time", text(time(run)));
     let error = ("error", text(error(pane, readings)));

@@ -1,6 +1,6 @@
 //! The readings of a run in words, and the text about one that blew up.
 
-use a3_core::{BlowUp, Cause, Control, Simulation};
+use a3_core::{BlowUp, Cause, Control, Simulation, StepLength};
 use a3_files::holding::MIN_HOLD_TIME;
 use egui::{RichText, Sense, Ui, vec2};
 
@@ -40,20 +40,7 @@ pub fn scene(simulation: &Simulation) -> String {
 
 /// Returns the method, and its step or tolerance.
 pub fn method(simulation: &Simulation) -> String {
-    let control = match simulation.control() {
-        Control::Step(step) => format!("step {} s", seconds(step)),
-        control @ Control::Tolerance(_) => control.to_string(),
-    };
-    format!("{},  {control}", simulation.method().title)
-}
-
-/// Formats a step (s) as a user would type it: 1/60 instead of all its digits.
-pub fn seconds(step: f64) -> String {
-    let (decimal, rate) = (step.to_string(), 1.0 / step);
-    if decimal.len() > 10 && (rate - rate.round()).abs() < 1e-9 * rate {
-        return format!("1/{}", rate.round());
-    }
-    decimal
+    format!("{},  {}", simulation.method().title, simulation.control())
 }
 
 /// Returns the present step of an adaptive method, and the number of rejected ones.
@@ -255,8 +242,8 @@ pub fn explain(ui: &mut Ui, pane: &Pane, blow_up: &BlowUp) {
                 .filter(|limit| same && step > *limit)
                 .map(|limit| format!(": past its limit here of {} ms", digits(1e3 * limit)));
             let past = past.unwrap_or_default();
-            let step = seconds(step);
-            format!("A step of {step} s was too long for {method}{past}.{sought}")
+            let step = StepLength(step);
+            format!("A step of {step} was too long for {method}{past}.{sought}")
         }
     }));
 }
@@ -297,19 +284,6 @@ mod tests {
     use super::*;
     use crate::hud::{pane, read};
     use crate::session::{Pane, Readings, RunAction, session, times};
-
-    #[test]
-    fn steps_are_written_as_one_would_type_them() {
-        for (step, words) in [
-            (0.005, "0.005"),
-            (1.0 / 60.0, "1/60"),
-            (0.016_666_666_666_666_7, "1/60"),
-            (0.001_234_567_890_123, "0.001234567890123"),
-            (1e-7, "0.0000001"),
-        ] {
-            assert_eq!(seconds(step), words);
-        }
-    }
 
     #[test]
     fn three_digits() {

@@ -131,6 +131,8 @@ fn origin(request: Request, opening: &Opening) -> Origin {
 
 #[cfg(test)]
 mod tests {
+    use a3_core::StepLength;
+
     use crate::session::{frames, session};
 
     /// A tiny stiff jelly opens with a step that holds, unless a step is asked for.
@@ -148,7 +150,8 @@ mod tests {
         let wanted = opened.runs.panes[0].wanted_step.unwrap();
         let step = opened.runs.first().control().step().unwrap();
         let said = opened.readings.message.clone().unwrap();
-        let why = format!("the step is {step} s here, since {wanted} s would not hold");
+        let [named, longer] = [step, wanted].map(StepLength);
+        let why = format!("the step is {named} here, since {longer} would not hold");
         assert!(step < wanted && said.contains(&why), "{said}");
         frames(&mut opened, 0.2);
         assert!(opened.runs.any_alive());

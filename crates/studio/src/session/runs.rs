@@ -1,7 +1,7 @@
 //! The runs of a session and their common time: the panes and the reference, and the steps and
 //! tolerances that the keys + and - choose.
 
-use a3_core::{Control, Error, Method, Path, Rounded, Simulation, integrators};
+use a3_core::{Control, Error, Method, Path, Simulation, StepLength, integrators};
 use a3_files::bounds;
 use a3_files::failure::Failure;
 use a3_files::holding::shorten;
@@ -280,10 +280,9 @@ fn joined(mut said: Vec<String>) -> Option<String> {
 /// Gives a run a shorter step if its own would not hold. Returns the step that it had (s), and why.
 fn shortened(run: &mut Simulation) -> Option<(f64, String)> {
     let asked = shorten(run)?;
-    let shorter = run.control().value();
+    let [shorter, wanted] = [run.control().value(), asked].map(StepLength);
     let solver = run.method().title;
-    let wanted = Rounded(asked);
-    let why = format!("{solver}: the step is {shorter} s here, since {wanted} s would not hold");
+    let why = format!("{solver}: the step is {shorter} here, since {wanted} would not hold");
     Some((asked, why))
 }
 

@@ -4,7 +4,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-use a3_core::{Control, Method, ParticleSystem, Refusal, integrators};
+use a3_core::{Control, Method, ParticleSystem, Refusal, StepLength, integrators};
 use a3_files::failure::Failure;
 use a3_files::report;
 use a3_files::setup::find;
@@ -76,7 +76,7 @@ fn all() -> String {
                 format!("{} ({} if springs are damped)", m.evaluations, m.damped_evaluations)
             },
             match m.default_control {
-                Control::Step(step) => format!("{step} s"),
+                Control::Step(step) => StepLength(step).to_string(),
                 Control::Tolerance(tolerance) => format!("tolerance {tolerance:.0e}"),
             },
             if m.needs_springs() {
