@@ -10,8 +10,8 @@
 //! continuous from one primitive to the next. The first one in canonical order repels a point that
 //! is as near to several.
 //!
-//! Corners and edges of cloth, boxes and meshes interact with all triangles: the surfaces below
-//! support them at many points.
+//! A vertex of cloth, of a box or of a mesh is repelled once by each flat face, whose inner edges
+//! and points repel nothing, and by all edges between faces: the surfaces below support it at many points.
 
 use std::cmp::Ordering;
 
@@ -34,6 +34,10 @@ const NEIGHBOUR_SHARE: f64 = 2.0;
 /// over that at which the range of the other is entered: 0 for level things at rest, 1 for one that
 /// falls beside the other.
 const ACROSS_SHARE: f64 = 0.5;
+
+/// Weight of each corner from which on a point is above the interior of a triangle, and nearer to no
+/// other one of the same face: more than rounding.
+const INNER_SHARE: f64 = 1e-6;
 
 /// Place at which one side of a pair touches a primitive of a rigid shape.
 struct Footing {
@@ -108,8 +112,8 @@ impl Surface {
             v: candidate.of(speeds),
         };
         let find = |candidate: &Candidate, pair: &Pair| {
-            let is_inner = self.is_inner(candidate);
-            (!is_inner).then(|| find(candidate, pair)).flatten()
+            let found = find(candidate, pair)?;
+            (!self.leaves_to_neighbour(candidate, still.x)).then_some(found)
         };
         if self.has_points {
             let standing = |candidate: &Candidate| {
@@ -126,11 +130,6 @@ impl Surface {
         }
     }
 
-    /// Returns whether an edge of a rigid shape is between coplanar triangles.
-    fn is_flat(&self, [a, b]: [u32; 2]) -> bool {
-        !self.flat.is_empty() && self.flat.binary_search(&[a.min(b), a.max(b)]).is_ok()
-    }
-
     /// Returns whether a vertex is a particle without triangles and edges, or a point of a round
     /// shape.
     pub(crate) fn is_single(&self, vertex: u32) -> bool {
@@ -143,13 +142,28 @@ impl Surface {
         vertex as usize >= self.particles() || self.solid(vertex).is_some()
     }
 
-    /// Returns whether a pair is of a round body with an edge between coplanar triangles, which
-    /// does not repel it: the faces on either side do.
-    fn is_inner(&self, candidate: &Candidate) -> bool {
-        let [i, a, b, c] = candidate.points;
-        candidate.kind == PairKind::EdgeEdge
-            && (self.is_flat([i, a]) && self.is_single(b)
-                || self.is_flat([b, c]) && self.is_single(i))
+    /// Returns whether another triangle of the same flat face is nearer to the vertex of a pair, or
+    /// as near and earlier: the one surface that they form repels the vertex once.
+    fn leaves_to_neighbour(&self, candidate: &Candidate, x: &[Vector3<f64>]) -> bool {
+        let [i, own @ ..] = candidate.points;
+        if candidate.kind != PairKind::VertexTriangle || self.flat.beside.is_empty() {
+            return false;
+        }
+        let Some(beside) = self.flat.beside.get(&own) else {
+            return false;
+        };
+        let to = |[a, b, c]: [u32; 3]| {
+            let points = [i, a, b, c].map(|i| x[i as usize]);
+            closest(PairKind::VertexTriangle, &points)
+        };
+        let Closest { weights, offset } = to(own);
+        let distance = offset.norm_squared();
+        let is_nearer = |other: [u32; 3]| {
+            let theirs = to(other).offset.norm_squared();
+            theirs < distance || theirs == distance && other < own
+        };
+        let is_inside = weights[1..].iter().all(|weight| *weight < -INNER_SHARE);
+        !is_inside && beside.iter().any(|other| is_nearer(*other))
     }
 
     /// Returns the place at which a pair touches, if it is a single point with a primitive of a

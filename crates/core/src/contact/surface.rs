@@ -1,14 +1,12 @@
 //! Surface of a network: vertices, edges and triangles of its bodies and of its obstacles, each
 //! listed once.
 
-use std::collections::BTreeSet;
-
 use nalgebra::Vector3;
 
 use super::obstacle::Obstacle;
 use super::skin::{KEPT_SHARE, Law, Skin, TURNING_LOSS};
 use crate::error::Vertex;
-use crate::geometry::{PairKind, Shape};
+use crate::geometry::{FlatFaces, PairKind, Shape};
 use crate::path::Place;
 use crate::rigid::Body;
 
@@ -38,8 +36,9 @@ pub struct Surface {
     pub(super) obstacles: Items,
     /// Particles of a fluid, as points, in order.
     pub(super) drops: Items,
-    /// Edges of rigid shapes between coplanar triangles, sorted.
-    pub(super) flat: Vec<[u32; 2]>,
+    /// Flat faces of rigid shapes. Their inner edges and points touch nothing: what would cross
+    /// one crosses a triangle beside it, or has a corner there.
+    pub(super) flat: FlatFaces,
     /// Whether each particle has no triangles and no edges, and belongs to no rigid body.
     pub(super) singles: Vec<bool>,
     /// Whether any vertex is single, and may touch a rigid shape.
@@ -97,14 +96,13 @@ impl Surface {
                 if let Shape::Sphere { .. } = part.shape {
                     sides.push([first; 2]);
                 }
-                let flat = simplices.flat_edges();
-                surface.flat.extend(flat.iter().map(|e| e.map(|i| first + i)));
+                surface.flat.add(&simplices.flat_faces(), first);
                 faces.extend(simplices.triangles.iter().map(|t| t.map(|i| first + i)));
                 sides.extend(simplices.edges.iter().map(|e| e.map(|i| first + i)));
                 first += points;
             }
         }
-        surface.bodies = Items::new(faces, sides, &[]);
+        surface.bodies = Items::new(faces, sides, &surface.flat, &[]);
         let (mut faces, mut sides) = (vec![], vec![]);
         for obstacle in obstacles {
             let first = surface.skins.len() as u32;
@@ -128,14 +126,12 @@ impl Surface {
             if let Shape::Sphere { .. } = obstacle.shape {
                 sides.push([first; 2]);
             }
-            let flat = simplices.flat_edges();
-            surface.flat.extend(flat.iter().map(|e| e.map(|i| first + i)));
+            surface.flat.add(&simplices.flat_faces(), first);
             faces.extend(simplices.triangles.iter().map(|t| t.map(|i| first + i)));
             sides.extend(simplices.edges.iter().map(|e| e.map(|i| first + i)));
             surface.anchors.push(simplices.points);
         }
-        surface.flat.sort_unstable();
-        surface.obstacles = Items::new(faces, sides, &[&surface.bodies]);
+        surface.obstacles = Items::new(faces, sides, &surface.flat, &[&surface.bodies]);
         let is_hard = !(bodies.is_empty() && obstacles.is_empty());
         surface.has_points =
             is_hard && (0..surface.skins.len() as u32).any(|i| surface.is_single(i));
@@ -149,7 +145,7 @@ impl Surface {
         let others = [&self.bodies, &self.obstacles];
         let mut drops = drops.to_vec();
         drops.sort_unstable();
-        self.drops = Items::new([], drops, &others);
+        self.drops = Items::new([], drops, &FlatFaces::default(), &others);
         self.measure();
         self
     }
@@ -206,7 +202,7 @@ impl Surface {
 
     /// Returns the edges of bodies and of obstacles, the lower end first.
     pub fn edges(&self) -> impl Iterator<Item = [u32; 2]> {
-        let edges = self.bodies.edges.iter().chain(&self.obstacles.edges);
+        let edges = self.bodies.edges.iter().chain(&self.obstacles.edges).chain(&self.flat.edges);
         edges.copied().filter(|[a, b]| a != b)
     }
 
@@ -402,14 +398,15 @@ pub(super) struct Items {
 
 impl Items {
     /// Collects the vertices, edges and sides of these triangles, and those edges and points that
-    /// are in none of them. They rank after all items of `others`.
+    /// are in none of them, but for those inside flat faces. They rank after all items of `others`.
     pub fn new(
         triangles: impl IntoIterator<Item = [u32; 3]>,
         edges: impl IntoIterator<Item = [u32; 2]>,
+        flat: &FlatFaces,
         others: &[&Self],
     ) -> Self {
         let mut items = Self::default();
-        let (mut seen_vertices, mut seen_edges) = (BTreeSet::new(), BTreeSet::new());
+        let (mut seen_vertices, mut seen_edges) = (flat.inside.clone(), flat.edges.clone());
         items.corners.extend(triangles);
         items.triangles = items.corners.len();
         for [a, b, c] in &items.corners {

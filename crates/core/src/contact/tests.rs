@@ -38,8 +38,9 @@ fn obstacles() -> Vec<Obstacle> {
 /// order, from a check of every pair.
 fn all_within(surface: &Surface, x: &[Vector3<f64>]) -> Vec<(PairKind, [u32; 4])> {
     let n = surface.particles() as u32;
-    let (triangles, edges): (Vec<_>, Vec<_>) =
-        (surface.triangles().collect(), surface.edges().collect());
+    let triangles: Vec<_> = surface.triangles().collect();
+    let edges = surface.bodies.edges.iter().chain(&surface.obstacles.edges);
+    let edges: Vec<_> = edges.filter(|[a, b]| a != b).collect();
     let vertices = surface.bodies.vertices.iter().chain(&surface.obstacles.vertices);
     let mut pairs = vec![];
     let mut add = |kind: PairKind, points: [u32; 4]| {
@@ -59,7 +60,7 @@ fn all_within(surface: &Surface, x: &[Vector3<f64>]) -> Vec<(PairKind, [u32; 4])
     }
     for (k, e) in edges.iter().enumerate() {
         for f in edges[..k].iter().filter(|f| !e.iter().any(|i| f.contains(i))) {
-            let ([a, b], [c, d]) = if e < f { (*e, *f) } else { (*f, *e) };
+            let ([a, b], [c, d]) = if e < f { (**e, **f) } else { (**f, **e) };
             add(PairKind::EdgeEdge, [a, b, c, d]);
         }
     }

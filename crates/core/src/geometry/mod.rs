@@ -13,5 +13,6 @@ mod triangles;
 pub use closed_mesh::ClosedMesh;
 pub(crate) use closest::normals;
 pub use closest::{Closest, PairKind, closest, weighted};
+pub(crate) use shape::FlatFaces;
 pub use shape::{Shape, Simplices};
 pub(crate) use triangles::Triangles;

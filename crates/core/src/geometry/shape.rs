@@ -1,6 +1,6 @@
 //! Shapes of obstacles.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
@@ -51,28 +51,73 @@ pub struct Simplices {
     pub radius: f64,
 }
 
+/// Flat faces that consist of several triangles, by numbers of points.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FlatFaces {
+    /// Edges between two triangles of a face, the lower end first.
+    pub edges: BTreeSet<[u32; 2]>,
+    /// Points inside a face.
+    pub inside: BTreeSet<u32>,
+    /// Triangles with those others of the same face that share a corner with them.
+    pub beside: BTreeMap<[u32; 3], Vec<[u32; 3]>>,
+}
+
+impl FlatFaces {
+    /// Adds faces whose points are numbered from `first`.
+    pub fn add(&mut self, faces: &Self, first: u32) {
+        self.edges.extend(faces.edges.iter().map(|ends| ends.map(|i| first + i)));
+        self.inside.extend(faces.inside.iter().map(|i| first + i));
+        let of = |corners: &[u32; 3]| corners.map(|i| first + i);
+        let beside = faces.beside.iter();
+        self.beside.extend(beside.map(|(own, all)| (of(own), all.iter().map(of).collect())));
+    }
+}
+
 /// Sine of the angle between two triangles up to which they count as coplanar.
 const COPLANAR_SINE: f64 = 1e-9;
 
 impl Simplices {
-    /// Lists the edges between coplanar triangles, as indices of points, the lower one first.
-    pub(crate) fn flat_edges(&self) -> Vec<[u32; 2]> {
-        let mut sides = BTreeMap::new();
-        let mut flat = vec![];
-        for &[a, b, c] in &self.triangles {
-            let [p, q, r] = [a, b, c].map(|i| self.points[i as usize]);
-            let normal = (q - p).cross(&(r - p)).normalize();
-            for [i, j] in [[a, b], [b, c], [c, a]] {
-                let edge = [i.min(j), i.max(j)];
-                let Some(other) = sides.insert(edge, normal) else {
-                    continue;
-                };
-                if normal.cross(&other).norm() < COPLANAR_SINE && normal.dot(&other) > 0.0 {
-                    flat.push(edge);
+    /// Finds the flat faces that consist of several triangles.
+    pub(crate) fn flat_faces(&self) -> FlatFaces {
+        let normals: Vec<_> = (self.triangles.iter())
+            .map(|corners| {
+                let [p, q, r] = corners.map(|i| self.points[i as usize]);
+                (q - p).cross(&(r - p)).normalize()
+            })
+            .collect();
+        let mut around = vec![vec![]; self.points.len()];
+        for (k, corners) in self.triangles.iter().enumerate() {
+            corners.iter().for_each(|i| around[*i as usize].push(k));
+        }
+        let is_coplanar = |k: usize, l: usize| {
+            normals[k].cross(&normals[l]).norm() < COPLANAR_SINE
+                && normals[k].dot(&normals[l]) > 0.0
+        };
+        let mut faces = FlatFaces::default();
+        for (k, own) in self.triangles.iter().enumerate() {
+            let near = own.iter().flat_map(|i| &around[*i as usize]);
+            let beside: BTreeSet<_> =
+                near.copied().filter(|l| *l != k && is_coplanar(k, *l)).collect();
+            for l in &beside {
+                let mut common = own.iter().filter(|i| self.triangles[*l].contains(i));
+                if let (Some(i), Some(j)) = (common.next(), common.next()) {
+                    faces.edges.insert([*i.min(j), *i.max(j)]);
                 }
             }
+            if !beside.is_empty() {
+                faces.beside.insert(*own, beside.iter().map(|l| self.triangles[*l]).collect());
+            }
         }
-        flat
+        let inside = (0..around.len()).filter(|i| {
+            let sides = around[*i].iter().flat_map(|k| self.triangles[*k]);
+            let mut edges = sides.filter(|j| *j as usize != *i).map(|j| {
+                let i = *i as u32;
+                [i.min(j), i.max(j)]
+            });
+            !around[*i].is_empty() && edges.all(|edge| faces.edges.contains(&edge))
+        });
+        faces.inside = inside.map(|i| i as u32).collect();
+        faces
     }
 }
 

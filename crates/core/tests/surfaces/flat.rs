@@ -129,10 +129,13 @@ fn build(text: &str) -> Scene {
 enum Thing {
     Particle,
     Ball,
+    Cube,
+    Cloth,
 }
 
 impl Thing {
-    const ALL: [Self; 2] = [Self::Particle, Self::Ball];
+    const ALL: [Self; 4] = [Self::Particle, Self::Ball, Self::Cube, Self::Cloth];
+    const SINGLE: [Self; 2] = [Self::Particle, Self::Ball];
 
     /// Text of the body, whose lowest points are at that height (m).
     fn text(self, frame: Frame, [x, y, z]: [f64; 3], velocity: [f64; 3]) -> String {
@@ -154,6 +157,15 @@ impl Thing {
                 above(0.0)
             ),
             Self::Ball => body(format!("ball = {}", length(0.1)), 0.1),
+            Self::Cube => body(format!("box = {:?}", [length(0.2); 3]), 0.1),
+            Self::Cloth => format!(
+                "[[cloth]]\ngrid = [4, 4]\nmass = 1\nstiffness = [1, 1, 1]\nwidth = {}
+                at = {:?}\nright = {:?}\ndown = {:?}\nvelocity = {velocity:?}\nthickness = {d}\n",
+                length(0.3),
+                above(0.0),
+                frame.direction([0.6, 0.0, 0.8]),
+                frame.direction([0.8, 0.0, -0.6])
+            ),
         }
     }
 }
@@ -307,7 +319,7 @@ fn a_seam_repels_as_a_floor() {
     };
     let floor = Ground::Floor.text(PLAIN);
     for (number, ground) in SEAMS.iter().enumerate() {
-        for thing in Thing::ALL {
+        for thing in Thing::SINGLE {
             for y in [0.004, 0.01, 0.016] {
                 for x in [0.0, 1e-17, -1e-9, 2e-5, -1e-4, 3e-3, -0.02, 0.07] {
                     for z in [0.0, 0.1, 0.5] {
