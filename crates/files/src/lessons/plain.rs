@@ -25,7 +25,11 @@ pub(super) fn pieces(page: &str) -> Vec<Piece> {
                 writer.end();
                 is_code = !is_code;
             }
-            _ if is_code => writer.add_line(&format!("    {line}")),
+            // Whether a command fails is often the answer to a question.
+            _ if is_code => {
+                let command = line.split("    # exit code").next().unwrap_or(line);
+                writer.add_line(&format!("    {command}"));
+            }
             "" => {
                 writer.end();
                 writer.gap();
