@@ -72,7 +72,8 @@ pub fn report(found: &Stability) -> Report {
     let mut head = format!("{}: {start} at the start", found.name);
     if let Some(rest) = &found.at_rest {
         let rest = motion(rest).unwrap_or("none".into());
-        let _ = write!(head, ", {rest} at rest");
+        let below = " ".repeat(found.name.chars().count() + 2);
+        let _ = write!(head, ",\n{below}{rest} at rest");
     }
     if let Some(rate) = found.feedback {
         let _ = write!(head, "; errors of constraints decay at {rate:.1} / s");
@@ -122,9 +123,9 @@ pub fn reasons(found: &Stability) -> Report {
         rows.push(vec![row.method.name.into(), stable, row.accurate.map_or("-".into(), step), why]);
     }
     let Report { head, .. } = report(found);
-    let head = head.lines().next().unwrap_or_default();
+    let head = head.split("\n\n").next().unwrap_or_default();
     Report {
-        head: format!("{head}\nlargest steps (ms), fixed ones also for adaptive solvers\n"),
+        head: format!("{head}\n\nlargest steps (ms), fixed ones also for adaptive solvers\n"),
         rows,
         foot: format!(
             "stable: nothing grows without end; accurate: errors stay below a hundredth of the motion in the first {:.2} s\n",
