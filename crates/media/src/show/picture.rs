@@ -24,6 +24,10 @@ use crate::surfaces;
 /// of them are drawn as lines and small balls, because a coil has 170 lines.
 const MAX_COILS: usize = 60;
 
+/// Radius of balls for particles without a surface where they are few, in units of length of the
+/// scene.
+const BALL: f32 = 0.085;
+
 /// The view of a run: its options, and the buffers of its picture.
 #[derive(Clone)]
 pub struct Show {
@@ -247,6 +251,13 @@ impl Show {
         }
     }
 
+    /// Returns the radius of the balls that particles without a surface are drawn as (m), where
+    /// these are few.
+    #[must_use]
+    pub fn ball_radius(&self) -> f32 {
+        BALL * self.unit
+    }
+
     /// Returns the position of particle i (m).
     fn at(&self, i: usize) -> [f32; 3] {
         let [x, y, z, _] = self.points[i];
@@ -313,7 +324,7 @@ impl Show {
             let (radius, color) = match (pinned, many) {
                 (true, false) => (0.045, INK),
                 (true, true) => (0.032, INK),
-                (false, false) => (0.085, RED),
+                (false, false) => (BALL, RED),
                 (false, true) => (0.028, RED),
             };
             let color = if pinned { color } else { self.colouring.of(i, color) };

@@ -67,14 +67,14 @@ fn body(ctx: &Context, session: &Session) -> Option<(Rect, Rect)> {
     let (tile, pane) = *layout::tiles_in(ctx, panes.len()).first()?;
     let project = session.view.camera.projection(tile.aspect());
     let (right, up, _) = session.view.camera.axes();
-    let particles = (0..run.particles()).filter(|i| !network.is_wall(*i));
-    let edges = network.bodies().iter().flat_map(|body| {
-        let center = show::to_f32(run.position(body.center()));
-        let reach = body.radius() as f32;
+    let ball = panes[0].show.ball_radius();
+    let particles = (0..run.particles()).filter(|i| !network.is_wall(*i)).map(|i| (i, ball));
+    let bodies = network.bodies().iter().map(|body| (body.center(), body.radius() as f32));
+    let edges = particles.chain(bodies).flat_map(|(i, reach)| {
+        let center = show::to_f32(run.position(i));
         [right, up, -right, -up].map(|way| [0, 1, 2].map(|k| center[k] + reach * way[k]))
     });
-    let points = particles.map(|i| show::to_f32(run.position(i))).chain(edges);
-    let seen = points.filter_map(project);
+    let seen = edges.filter_map(project);
     let places = seen.map(|([x, y], _)| pane.min + vec2(x, y) * pane.size());
     let body =
         places.fold(Rect::NOTHING, |body, place| body.union(Rect::from_min_max(place, place)));
