@@ -41,6 +41,7 @@ pub fn apply(session: &mut Session, action: impl Into<Action>, at: usize) -> boo
             {
                 session.readings.say(said);
             }
+            session.recall_plots();
         }
         Action::Type(key) if own.has(RunAction::Lessons) => {
             own.lessons.type_key(key, &mut own.all_marked);
@@ -534,6 +535,7 @@ impl Session {
         panel.beside = Some(action).filter(|pane| !panel.has(*pane));
         if panel.has(RunAction::Plots) {
             plotting::pick_first(&mut self.runs.panes);
+            self.recall_plots();
         }
         if action != RunAction::Panel {
             self.readings.help = false;
@@ -656,6 +658,13 @@ impl Session {
         self.scenes.shown = next;
         self.set_scene(&setup);
         Ok(())
+    }
+
+    /// Gives what has just been chosen for plots its values in the last seconds.
+    fn recall_plots(&mut self) {
+        for (k, pane) in self.runs.panes.iter_mut().enumerate() {
+            pane.traces.recall(&pane.simulation, self.timeline.past(k));
+        }
     }
 
     /// Removes the ruler of the former scene and, if the plots are open, plots what moves alone.

@@ -561,6 +561,30 @@ mod tests {
         assert!(session.runs.panes[0].traces.is_empty());
     }
 
+    /// Plots that are opened while runs are paused show the last seconds, with the same values as
+    /// those that were open all the time.
+    #[test]
+    fn plots_that_are_opened_late_show_the_last_seconds() {
+        let [early, late] = [true, false].map(|early| {
+            let mut session = compared(&["r:0.01", "v:0.01", "--scene", "pendulum"], 0.0);
+            session.readings.in_window = true;
+            if early {
+                session.toggle(RunAction::Plots);
+            }
+            frames(&mut session, 2.0);
+            session.act(RunAction::Pause, 0);
+            if !early {
+                session.toggle(RunAction::Plots);
+            }
+            rows(&session)
+        });
+        assert!(late.len() > 100, "{}", late.len());
+        for row in &late {
+            let same = early.iter().find(|other| other.time == row.time).unwrap();
+            assert_eq!(same.values[..10], row.values[..10], "{}", row.time);
+        }
+    }
+
     #[test]
     fn what_is_plotted_is_in_every_pane_and_changes_no_bit() {
         let mut plotted = compared(&["e:0.0005", "a", "--scene", "cloth"], 0.0);

@@ -14,7 +14,7 @@ const MAX_MEMORY: usize = 64 << 20;
 /// Recorded moments, the oldest first.
 #[derive(Default)]
 pub struct Timeline {
-    moments: Rows<States>,
+    moments: Rows<MomentStates>,
     /// Index of the chosen moment; `None` for the newest.
     shown: Option<usize>,
     /// Whether a run blew up after the newest moment.
@@ -22,10 +22,10 @@ pub struct Timeline {
 }
 
 /// The states of all runs at one time; `None` for a run that had diverged.
-type States = Vec<Option<Checkpoint>>;
+type MomentStates = Vec<Option<Checkpoint>>;
 
 /// Returns the memory of the states of a moment (bytes).
-fn size(moment: &Row<States>) -> usize {
+fn size(moment: &Row<MomentStates>) -> usize {
     moment.values.iter().flatten().map(Checkpoint::size).sum()
 }
 
@@ -56,7 +56,7 @@ impl Timeline {
 
     /// Returns the states of all runs at the last moment before a time (s), or else at the oldest;
     /// no states if there is no moment.
-    pub fn before(&self, clock: f64) -> States {
+    pub fn before(&self, clock: f64) -> MomentStates {
         let later = self.moments.partition_point(|moment| moment.time <= clock);
         let moment = self.moments.get(later.saturating_sub(1));
         moment.map_or(vec![], |moment| moment.values.clone())
@@ -88,7 +88,7 @@ impl Timeline {
         let next = self.moments.back().map_or(0, size);
         let is_full = self.moments.len() > 1 && taken + next > MAX_MEMORY;
         // Reuse the memory of the oldest moment.
-        let old = |oldest: &mut Row<States>| is_full || oldest.time < clock - SPAN;
+        let old = |oldest: &mut Row<MomentStates>| is_full || oldest.time < clock - SPAN;
         let spare = self.moments.pop_front_if(old);
         let mut places = spare.map_or(vec![], |moment| moment.values).into_iter();
         let states = runs.map(|run| {
@@ -125,7 +125,7 @@ impl Timeline {
 
     /// Returns the states nearest to times that are `interval` (s) apart, over the last `seconds`
     /// (s) before the chosen moment, the oldest first.
-    pub fn last(&self, seconds: f64, interval: f64) -> Vec<States> {
+    pub fn last(&self, seconds: f64, interval: f64) -> Vec<MomentStates> {
         let ends = self.moments.front().zip(self.moments.get(self.chosen()));
         let Some([first, last]) = ends.map(|(first, last)| [first.time, last.time]) else {
             return vec![];
@@ -134,6 +134,12 @@ impl Timeline {
         let times = (0..=frames).rev().map(|k| last - f64::from(k) * interval);
         let nearest = times.filter_map(|time| rows::nearest(&self.moments, time));
         nearest.map(|moment| moment.values.clone()).collect()
+    }
+
+    /// Returns the states of run k up to the chosen moment, the oldest first.
+    pub fn past(&self, k: usize) -> impl Iterator<Item = &Checkpoint> {
+        let moments = self.moments.iter().take(self.chosen() + 1);
+        moments.filter_map(move |moment| moment.values.get(k)?.as_ref())
     }
 
     /// Restores the runs to the chosen moment.

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use a3_core::Simulation;
+use a3_core::{Checkpoint, Simulation};
 use a3_scenes::Splice;
 
 use super::pick::{ANGLE, Kind, Pick, Row, VALUES, Variable};
@@ -141,6 +141,27 @@ impl Traces {
             let mut series = Series::default();
             series.push(pick.read(run), self.trigger.of(pick.kind()));
             self.all.push((pick, series));
+        }
+    }
+
+    /// Gives what has just been chosen its values in the past states of a run, the oldest first.
+    pub fn recall<'m>(&mut self, run: &Simulation, past: impl Iterator<Item = &'m Checkpoint>) {
+        let mut chosen: Vec<_> = self.all.iter_mut().filter(|(_, it)| it.rows.len() == 1).collect();
+        if chosen.is_empty() {
+            return;
+        }
+        let Ok(mut earlier) = run.anew(run.method(), run.control()) else {
+            return;
+        };
+        for moment in past {
+            if earlier.rewind(moment).is_ok() && earlier.time() < run.time() {
+                for (pick, series) in &mut chosen {
+                    series.push(pick.read(&earlier), self.trigger.of(pick.kind()));
+                }
+            }
+        }
+        for (pick, series) in chosen {
+            series.push(pick.read(run), self.trigger.of(pick.kind()));
         }
     }
 
