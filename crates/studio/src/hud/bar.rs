@@ -65,8 +65,8 @@ impl Button {
 /// Draws the bar, if the window has room for it.
 pub fn show(ctx: &Context, session: &Session) {
     let (window, picture) = (ctx.viewport_rect(), ctx.content_rect());
-    let height = layout::bar_height(session, [window.width(), window.height()]);
-    if height == 0.0 {
+    let [above, buttons] = layout::bar_rows(session, [window.width(), window.height()]);
+    if buttons == 0.0 {
         return;
     }
     let right = if layout::is_bar_whole(session, window.width()) {
@@ -75,15 +75,17 @@ pub fn show(ctx: &Context, session: &Session) {
         picture.right()
     };
     let left = picture.left();
-    let rect = window.with_min_y(window.bottom() - height);
+    let rect = window.with_min_y(window.bottom() - above - buttons);
     let rect = rect.with_min_x(left).with_max_x(right);
     docked(ctx, "controls", rect, |ui| {
-        contents(ui, rect.shrink2(vec2(8.0, 0.0)), session);
+        contents(ui, rect.shrink2(vec2(8.0, 0.0)), above, session);
     });
 }
 
-/// Draws the buttons at both ends of a rectangle, and the timeline between them.
-fn contents(ui: &Ui, rect: Rect, session: &Session) {
+/// Draws the buttons at both ends of a rectangle, and the timeline between them, or above them if
+/// it has a height there (points).
+fn contents(ui: &Ui, whole: Rect, above: f32, session: &Session) {
+    let rect = whole.with_min_y(whole.top() + above);
     let place = |button: &Button, left: f32, width: f32| {
         let room = Rect::from_x_y_ranges(left..=left + width, rect.y_range());
         button.show(ui, room);
@@ -101,7 +103,7 @@ fn contents(ui: &Ui, rect: Rect, session: &Session) {
     }
     let mut others = others(session);
     let width = |buttons: &[Button]| buttons.iter().map(|it| it.width(ui, symbol)).sum::<f32>();
-    let room = right - left - MIN_TIMELINE_WIDTH;
+    let room = right - left - if above > 0.0 { 0.0 } else { MIN_TIMELINE_WIDTH };
     // In a narrow bar, a symbol has to do for scene and solver; then the last buttons go.
     if width(&others) > room {
         others[0].face = "☰".into();
@@ -115,7 +117,9 @@ fn contents(ui: &Ui, rect: Rect, session: &Session) {
         right -= width;
         place(button, right, width);
     }
-    let room = Rect::from_x_y_ranges(left + 14.0..=right - 14.0, rect.y_range());
+    let strip = whole.with_max_y(rect.top()).shrink2(vec2(14.0, 0.0));
+    let between = rect.with_min_x(left + 14.0).with_max_x(right - 14.0);
+    let room = if above > 0.0 { strip } else { between };
     if let Some(position) = session.readings.timeline.filter(|_| room.width() > 60.0) {
         timeline(ui, room, &position);
     }
@@ -203,7 +207,7 @@ fn timeline(ui: &Ui, room: Rect, position: &TimelinePosition) {
     if response.hovered() || response.dragged() {
         ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
     }
-    let (painter, y) = (ui.painter(), room.bottom() - 13.0);
+    let (painter, y) = (ui.painter(), room.bottom() - 0.325 * room.height());
     let at = room.left() + position.share * room.width();
     let line = |from, to, color| {
         painter.hline(from..=to, y, Stroke::new(4.0, color));
@@ -220,7 +224,7 @@ fn timeline(ui: &Ui, room: Rect, position: &TimelinePosition) {
     painter.circle_filled(pos2(at, y), 6.5, INK);
     painter.circle_filled(pos2(at, y), 2.5, PAPER);
     let say = |x, align, words: String, color| {
-        let place = pos2(x, room.top() + 5.0);
+        let place = pos2(x, room.top() + 0.125 * room.height());
         write(painter, place, align, words, 12.0, color);
     };
     if position.share < 1.0 {
@@ -304,7 +308,9 @@ mod tests {
             let (words, places, _) = draw(&mut window, &touched, away);
             assert!(words.contains('📖') && words.contains('▶'), "{words}");
             assert_eq!(words.contains('⏭'), width > 500.0, "{words}");
-            let middles = places.iter().map(|place| place.center().x);
+            // The timeline is above the buttons of a phone.
+            let buttons = places.iter().filter(|place| place.center().y > 552.0);
+            let middles = buttons.map(|place| place.center().x);
             let middles: Vec<_> = middles.filter(|x| *x > 0.5 * width).collect();
             let apart =
                 middles.iter().filter(|x| middles.iter().any(|y| y - *x > 0.0 && y - *x < 40.0));

@@ -15,16 +15,31 @@ const BAR_HEIGHT: f32 = 40.0;
 /// Height of the bar for fingers (points).
 const TOUCH_BAR_HEIGHT: f32 = 48.0;
 
-/// Returns the height of the bar below the picture, in a window of a size (points). For fingers it
-/// is higher, and a small window has none.
-pub fn bar_height(session: &Session, [width, height]: [f32; 2]) -> f32 {
+/// Height of the timeline where it lies above the buttons of the bar (points).
+const TIMELINE_HEIGHT: f32 = 32.0;
+/// Width of a window in which the timeline has room between the buttons (points).
+const WIDTH_OF_ONE_ROW: f32 = 670.0;
+/// Height of a window that has room for both (points).
+const HEIGHT_OF_TWO_ROWS: f32 = 420.0;
+
+/// Returns the heights of the timeline above the buttons of the bar below the picture, or 0 where
+/// it lies between them, and of the buttons, in a window of a size (points). For fingers buttons
+/// are higher, and a small window has none.
+pub fn bar_rows(session: &Session, [width, height]: [f32; 2]) -> [f32; 2] {
     if width < 280.0 || height < 240.0 {
-        0.0
-    } else if session.readings.touch {
-        TOUCH_BAR_HEIGHT
-    } else {
-        BAR_HEIGHT
+        return [0.0; 2];
     }
+    let narrower = beside(session).filter(|_| !is_bar_whole(session, width));
+    let room = width - narrower.map_or(0.0, |pane| pane.taken([width, height])[0]);
+    let is_above =
+        room < WIDTH_OF_ONE_ROW && height >= HEIGHT_OF_TWO_ROWS && !session.panel.editor.open;
+    let buttons = if session.readings.touch { TOUCH_BAR_HEIGHT } else { BAR_HEIGHT };
+    [if is_above { TIMELINE_HEIGHT } else { 0.0 }, buttons]
+}
+
+/// Returns the height of the bar below the picture, in a window of a size (points).
+pub fn bar_height(session: &Session, window: [f32; 2]) -> f32 {
+    bar_rows(session, window).iter().sum()
 }
 
 /// Returns the pane that is open beside the picture, if one is, and the help does not hide it.

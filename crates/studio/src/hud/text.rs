@@ -71,6 +71,7 @@ fn brief(ui: &mut Ui, pane: &Pane, readings: &Readings) {
     ui.label(title(words::scene(simulation)).size(15.0));
     ui.label(text(words::method(simulation)));
     ui.label(text(time_or_pause(simulation, readings)));
+    radius(ui, pane);
     if simulation.blow_up().is_some() {
         return;
     }
@@ -91,6 +92,15 @@ fn least(ui: &mut Ui, pane: &Pane, readings: &Readings) {
     let name = pane.simulation.scene().name.clone();
     ui.add(Label::new(title(name).size(14.0)).truncate());
     ui.label(text(time_or_pause(&pane.simulation, readings)));
+    radius(ui, pane);
+}
+
+/// Writes the radius of the circle, which lessons ask for, where a run has no energy.
+fn radius(ui: &mut Ui, pane: &Pane) {
+    let (name, value) = words::energy(pane);
+    if pane.energy.is_none() {
+        ui.label(text(format!("{name} {value}")));
+    }
 }
 
 /// Returns the time, and whether the run is paused.
@@ -488,7 +498,7 @@ mod tests {
                     "step  0.0025 s",
                     "h  help",
                     "explicit Euler",
-                    "step  0.0002 s",
+                    "step  0.2 ms",
                     "time  0.025 s",
                     "time  0.0020 s",
                     "error  1.23e-4 m",

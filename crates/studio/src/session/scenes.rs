@@ -232,7 +232,7 @@ impl Scenes {
 
 #[cfg(test)]
 mod tests {
-    use a3_core::Simulation;
+    use a3_core::{Simulation, StepLength};
 
     use super::*;
     use crate::session::{RunAction, compared, session};
@@ -287,7 +287,8 @@ mod tests {
             if heun.1 < 0.02 {
                 shortened += 1;
                 let said = session.readings.message.clone().unwrap();
-                let step = format!("the step is {} s here, since 0.02 s would not hold", heun.1);
+                let step = StepLength(heun.1);
+                let step = format!("the step is {step} here, since 0.02 s would not hold");
                 assert!(said.contains(&step), "{}: {said}", heun.0);
                 if !["boxes", "dominoes", "ball-on-cloth", "t-handle", "drop"].contains(&&*heun.0) {
                     let run = &session.runs.panes[0].simulation;
