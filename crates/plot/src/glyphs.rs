@@ -42,7 +42,7 @@ pub fn outlines(at: Point, label: Label) -> Option<Path> {
         let Some(outline) = outlines.get(letter.glyph) else {
             continue;
         };
-        let mut pen = Pen {
+        let mut pen = GlyphPen {
             path: &mut path,
             at,
             turned: label.look.turned,
@@ -83,7 +83,7 @@ fn letters(font: &FontRef, data: &ShaperData, label: Label) -> (Vec<Letter>, f64
 }
 
 /// A pen that draws a letter on the sheet.
-struct Pen<'a> {
+struct GlyphPen<'a> {
     path: &'a mut PathBuilder,
     /// The point where the label is written.
     at: Point,
@@ -95,7 +95,7 @@ struct Pen<'a> {
     unit: [f64; 2],
 }
 
-impl Pen<'_> {
+impl GlyphPen<'_> {
     /// Returns a point of the letter on the sheet.
     fn on_sheet(&self, x: f32, y: f32) -> (f32, f32) {
         let [along, across] = [
@@ -107,7 +107,7 @@ impl Pen<'_> {
     }
 }
 
-impl OutlinePen for Pen<'_> {
+impl OutlinePen for GlyphPen<'_> {
     fn move_to(&mut self, x: f32, y: f32) {
         let (x, y) = self.on_sheet(x, y);
         self.path.move_to(x, y);

@@ -20,7 +20,7 @@ const LEVEL: u8 = 6;
 /// the same without the font.
 pub fn file([w, h]: Point, shapes: &[Shape]) -> Vec<u8> {
     let [w, h] = [w, h].map(|length| length as f32 * POINT);
-    let mut canvas = Canvas { content: Content::new(), opacities: vec![] };
+    let mut canvas = PdfCanvas { content: Content::new(), opacities: vec![] };
     // The y axis of a page points up.
     let turn = [POINT, 0.0, 0.0, -POINT, 0.0, h];
     canvas.content.save_state().transform(turn);
@@ -61,13 +61,13 @@ fn name(place: usize) -> Vec<u8> {
 }
 
 /// A page in progress.
-struct Canvas {
+struct PdfCanvas {
     content: Content,
     /// The opacities of areas so far.
     opacities: Vec<f32>,
 }
 
-impl Canvas {
+impl PdfCanvas {
     fn draw(&mut self, shapes: &[Shape]) {
         for shape in shapes {
             match shape {

@@ -31,7 +31,7 @@ pub struct Regridded {
 pub fn regridded(scene: &Description, factor: f64, particles: usize) -> Result<Regridded, String> {
     check_grids(scene)?;
     let mut other = scene.clone();
-    let mut places = Places::default();
+    let mut places = GridPlaces::default();
     for (own, other) in scene.cloth.iter().zip(&mut other.cloth) {
         regrid_cloth(own, other, factor)?;
         places.add(&own.grid, &other.grid);
@@ -99,7 +99,7 @@ fn check_grids(scene: &Description) -> Result<(), String> {
 fn keep_forces_per_mass(
     scene: &mut Description,
     own: &Description,
-    places: &Places,
+    places: &GridPlaces,
 ) -> Result<(), String> {
     let [was, is] = [places.of.len(), places.count].map(|n| n as f64);
     let by_particle = own.drag.is_some() || own.drag_per_mass.is_some();
@@ -169,7 +169,7 @@ fn regrid_fluids(
     own: &[Fluid],
     other: &mut [Fluid],
     factor: f64,
-) -> Result<Vec<(Points, Lattice)>, String> {
+) -> Result<Vec<(Points, GridLattice)>, String> {
     refuse!(if own.iter().any(|fluid| fluid.inflow.is_some()) =>
         "a fluid that flows in has no other lattice");
     // All fluids of a scene have the same spacing, so that all edges are multiples of the other.
@@ -190,7 +190,7 @@ fn regrid_fluids(
         refuse!(if count * ratio.powi(-i32::from(dimensions)) > MAX_PARTICLES =>
             "a finer fluid has too many particles");
         for (own, points) in own.into_iter().zip(points(other)?) {
-            let lattice = Lattice::new(&points, other.spacing, dimensions.into());
+            let lattice = GridLattice::new(&points, other.spacing, dimensions.into());
             lattices.push((own, lattice));
         }
     }
@@ -217,7 +217,7 @@ fn gcd(a: usize, b: usize) -> usize {
 
 /// Places of the particles of one grid on another, body by body.
 #[derive(Default)]
-struct Places {
+struct GridPlaces {
     /// Place of each particle, as a weighted mean of particles of the other grid: their numbers and
     /// weights.
     pub of: Vec<Vec<(usize, f64)>>,
@@ -227,7 +227,7 @@ struct Places {
     pub kept: usize,
 }
 
-impl Places {
+impl GridPlaces {
     /// Adds a body with its numbers of particles along each axis, on its own grid and on the other.
     /// The index along the last axis varies fastest.
     pub fn add(&mut self, own: &[usize], other: &[usize]) {
@@ -280,7 +280,7 @@ impl Places {
     ///
     /// # Errors
     /// The other lattice has no such cell near a particle.
-    pub fn add_points(&mut self, own: &[Vector3<f64>], other: &Lattice) -> Result<(), String> {
+    pub fn add_points(&mut self, own: &[Vector3<f64>], other: &GridLattice) -> Result<(), String> {
         for place in own {
             let corners = other.corners(place);
             let corners = corners.ok_or("a fluid has too few particles on another lattice")?;
@@ -293,7 +293,7 @@ impl Places {
 }
 
 /// Particles on points of a cubic lattice, or of a square one across z.
-struct Lattice {
+struct GridLattice {
     origin: Vector3<f64>,
     spacing: f64,
     /// Number of axes.
@@ -305,7 +305,7 @@ struct Lattice {
 /// Largest distance of a cell from a particle that is interpolated in it (cells).
 const MAX_DISTANCE: i64 = 5;
 
-impl Lattice {
+impl GridLattice {
     /// Creates the lattice of particles at these positions (m).
     pub fn new(points: &[Vector3<f64>], spacing: f64, dimensions: usize) -> Self {
         let origin = points.first().copied().unwrap_or_default();

@@ -233,7 +233,7 @@ pub fn choose_by<T: Copy, E: From<Error>>(
             continue;
         }
         begin(method);
-        let mut search = Search {
+        let mut search = MethodSearch {
             modes: &modes,
             frames,
             error,
@@ -262,7 +262,7 @@ enum Found<T> {
 }
 
 /// Search for the cheapest step or tolerance of one method.
-struct Search<'a, M> {
+struct MethodSearch<'a, M> {
     modes: &'a [Mode],
     frames: &'a Frames,
     /// Largest error that is allowed.
@@ -274,7 +274,7 @@ struct Search<'a, M> {
     measure: &'a mut M,
 }
 
-impl<M> Search<'_, M> {
+impl<M> MethodSearch<'_, M> {
     fn run<T: Copy, E: From<Error>>(&mut self) -> Result<Found<T>, E>
     where
         M: FnMut(&'static Method, Control) -> Result<Option<Trial<T>>, E>,

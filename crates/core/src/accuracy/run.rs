@@ -188,7 +188,7 @@ fn to_step(
 }
 
 /// End of a step: the number of the step, its time (s), the state y and f(t, y) there.
-struct End {
+struct StepEnd {
     number: u64,
     t: f64,
     y: Vec<f64>,
@@ -228,7 +228,7 @@ fn in_steps(
         if !to_step(simulation, frames, at, go_on)? {
             return Ok(false);
         }
-        if ends.last().is_none_or(|end: &End| end.number != at) {
+        if ends.last().is_none_or(|end: &StepEnd| end.number != at) {
             ends.clear();
             observer.observe(|_| remember_end(&mut ends, simulation));
         }
@@ -242,7 +242,7 @@ fn in_steps(
         }
         observer.observe(|visit| {
             interpolate(simulation, &ends, time, &mut state);
-            let far = |end: &&End| (end.t - time).abs();
+            let far = |end: &&StepEnd| (end.t - time).abs();
             let nearest = ends.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
             visit(&FrameState {
                 frame: k,
@@ -259,10 +259,10 @@ fn in_steps(
 }
 
 /// Remembers the state at the end of the last step, in place of the oldest if there are enough.
-fn remember_end(ends: &mut Vec<End>, simulation: &Simulation) {
+fn remember_end(ends: &mut Vec<StepEnd>, simulation: &Simulation) {
     let y = simulation.state();
     let mut end = if ends.len() < NODES as usize {
-        End { number: 0, t: 0.0, y: y.to_vec(), f: y.to_vec() }
+        StepEnd { number: 0, t: 0.0, y: y.to_vec(), f: y.to_vec() }
     } else {
         ends.remove(0)
     };
@@ -274,7 +274,7 @@ fn remember_end(ends: &mut Vec<End>, simulation: &Simulation) {
 }
 
 /// Interpolates the state at a time (s) between the ends of steps, and writes it to `state`.
-fn interpolate(simulation: &Simulation, ends: &[End], time: f64, state: &mut [f64]) {
+fn interpolate(simulation: &Simulation, ends: &[StepEnd], time: f64, state: &mut [f64]) {
     let system = simulation.model().system();
     // Times are in units of a step, so that the weights are of ordinary size.
     let (first, last) = (&ends[0], &ends[ends.len() - 1]);

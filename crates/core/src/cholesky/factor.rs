@@ -108,7 +108,7 @@ impl<const B: usize, const P: usize> Factor<B, P> {
     /// Solves A x = b: the unknowns are b before, and x afterwards.
     pub fn solve(&mut self, pattern: &Pattern) {
         let factor = self;
-        Arch::new().dispatch(Solve { factor, pattern });
+        Arch::new().dispatch(SolveTask { factor, pattern });
     }
 }
 
@@ -175,12 +175,12 @@ impl<const B: usize, const P: usize> WithSimd for Factorise<'_, B, P> {
     }
 }
 
-struct Solve<'a, const B: usize, const P: usize> {
+struct SolveTask<'a, const B: usize, const P: usize> {
     factor: &'a mut Factor<B, P>,
     pattern: &'a Pattern,
 }
 
-impl<const B: usize, const P: usize> WithSimd for Solve<'_, B, P> {
+impl<const B: usize, const P: usize> WithSimd for SolveTask<'_, B, P> {
     type Output = ();
 
     #[inline(always)]

@@ -207,7 +207,7 @@ pub(crate) fn order(mut meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
     }
     let last = (0..n as u32).filter(|i| is_last[*i as usize]);
     let count = last.clone().count();
-    let mut graph = Graph {
+    let mut graph = EliminationGraph {
         left: (n - count) as u32,
         blocks: count * (n - count) + count * count.saturating_sub(1) / 2,
         degree: meets.iter().map(|others| others.len() as u32).collect(),
@@ -240,7 +240,7 @@ pub(crate) fn order(mut meets: Vec<Vec<u32>>, most: usize) -> Option<Vec<u32>> {
 
 /// The remaining rows, and the elements. An element has the number of the row whose elimination
 /// created it.
-struct Graph {
+struct EliminationGraph {
     /// Rows that have not been eliminated.
     left: u32,
     /// Blocks below the diagonal in the columns of eliminated rows, and an upper bound of those in
@@ -267,7 +267,7 @@ struct Graph {
     order: Vec<u32>,
 }
 
-impl Graph {
+impl EliminationGraph {
     /// Eliminates a row: its neighbours become an element.
     fn eliminate(&mut self, pivot: u32) {
         let (p, before) = (pivot as usize, self.left);

@@ -134,13 +134,13 @@ pub(super) fn time_and_planes(
         least = plane.apart - (NEAR_SHARE * room).max(2.0 * tolerance);
     }
     let near = least + tolerance + NEAR_SHARE * gap.min(plane.apart - least);
-    let mut search = Search { kind, gaps: [least, near], planes: MAX_PLANES };
+    let mut search = HitSearch { kind, gaps: [least, near], planes: MAX_PLANES };
     let time = search.first_hit(&from, &moves, plane, MAX_PLANES_OF_PAIR);
     (time, MAX_PLANES - search.planes)
 }
 
 /// Search for the first time at which a pair, or a part of it, is hit.
-struct Search {
+struct HitSearch {
     kind: PairKind,
     /// Distance (m) that is kept, and distance at which a pair counts as hit.
     gaps: [f64; 2],
@@ -148,7 +148,7 @@ struct Search {
     planes: usize,
 }
 
-impl Search {
+impl HitSearch {
     /// Finds the share of the motion at which a pair is hit, whose first plane is given. It uses at
     /// most `most` planes, and then halves the motion.
     fn first_hit(

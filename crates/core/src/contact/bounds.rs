@@ -23,14 +23,14 @@ pub(super) const LANES: usize = 8;
 const PARALLEL_SINE_SQUARED: f64 = 1e-6;
 
 /// Coordinates of the four points of each pair: point, axis, pair.
-type Points<T> = [[T; 3]; 4];
+type PairPoints<T> = [[T; 3]; 4];
 
 /// Pairs of one kind, and the bounds of their distances.
 pub(super) struct Block {
     /// Positions (m), of which the first are the origins.
-    x: Points<[f64; LANES]>,
+    x: PairPoints<[f64; LANES]>,
     /// Velocities (m/s).
-    v: Points<[f64; LANES]>,
+    v: PairPoints<[f64; LANES]>,
     /// Lower bound of the distance (m); not finite for a pair without a plane, such as one that
     /// touches.
     pub distance: [f64; LANES],
@@ -159,16 +159,20 @@ fn load<S: Simd>(simd: S, [x, y, z]: &[[f64; LANES]; 3], part: usize) -> [Lanes<
 #[inline(always)]
 fn load_all<S: Simd>(
     simd: S,
-    [a, b, c, d]: &Points<[f64; LANES]>,
+    [a, b, c, d]: &PairPoints<[f64; LANES]>,
     part: usize,
-) -> Points<Lanes<S>> {
+) -> PairPoints<Lanes<S>> {
     [load(simd, a, part), load(simd, b, part), load(simd, c, part), load(simd, d, part)]
 }
 
 /// Returns the distance, along the normal, between the planes through the nearest points of both
 /// primitives.
 #[inline(always)]
-fn apart<S: Simd>(kind: PairKind, points: &Points<Lanes<S>>, normal: [Lanes<S>; 3]) -> Lanes<S> {
+fn apart<S: Simd>(
+    kind: PairKind,
+    points: &PairPoints<Lanes<S>>,
+    normal: [Lanes<S>; 3],
+) -> Lanes<S> {
     let [a, b, c, d] = *points;
     let [a, b, c, d] = [dot(a, normal), dot(b, normal), dot(c, normal), dot(d, normal)];
     if kind == PairKind::EdgeEdge { a.least(b) - c.most(d) } else { a - b.most(c).most(d) }
@@ -177,7 +181,7 @@ fn apart<S: Simd>(kind: PairKind, points: &Points<Lanes<S>>, normal: [Lanes<S>; 
 /// Returns the direction from the nearest point of a triangle to a vertex (Ericson, *Real-Time
 /// Collision Detection*, 2005, 5.1.5).
 #[inline(always)]
-fn from_triangle<S: Simd>(points: &Points<Lanes<S>>) -> [Lanes<S>; 3] {
+fn from_triangle<S: Simd>(points: &PairPoints<Lanes<S>>) -> [Lanes<S>; 3] {
     let [p, a, b, c] = *points;
     let simd = p[0].simd;
     let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
@@ -211,7 +215,7 @@ fn from_triangle<S: Simd>(points: &Points<Lanes<S>>) -> [Lanes<S>; 3] {
 /// Returns the direction from the nearest point of the second edge to that of the first (Ericson,
 /// 5.1.9). Of parallel edges, the line through the first end of the first is tried.
 #[inline(always)]
-fn between_edges<S: Simd>(points: &Points<Lanes<S>>) -> [Lanes<S>; 3] {
+fn between_edges<S: Simd>(points: &PairPoints<Lanes<S>>) -> [Lanes<S>; 3] {
     let [p, q, r, s] = *points;
     let simd = p[0].simd;
     let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));

@@ -104,14 +104,14 @@ fn most(a: f32, b: f32) -> f32 {
 
 /// Boxes of up to sixteen primitives.
 #[derive(Clone, Debug)]
-struct Block {
+struct BoxBlock {
     /// Lowest and highest coordinates (m): end of the courses, axis, box. Those of boxes that are
     /// missing are infinite, so that nothing is near them.
     low: [[[f32; LANES]; 3]; 2],
     high: [[[f32; LANES]; 3]; 2],
 }
 
-impl Block {
+impl BoxBlock {
     fn new() -> Self {
         Self { low: [[[f32::INFINITY; LANES]; 3]; 2], high: [[[f32::NEG_INFINITY; LANES]; 3]; 2] }
     }
@@ -206,7 +206,7 @@ fn load<S: Simd>(simd: S, numbers: &[f32; LANES], part: usize) -> S::f32s {
 pub(super) struct Tree {
     /// Tree of the blocks.
     bvh: Bvh,
-    blocks: Vec<Block>,
+    blocks: Vec<BoxBlock>,
     /// Boxes around all boxes of each block.
     wholes: Vec<Bounds>,
     /// Primitives, block by block, and the place of each in that order.
@@ -279,8 +279,8 @@ impl Tree {
         // do.
         let firsts = self.order.iter().step_by(LANES);
         let hulls: Vec<_> = firsts.map(|k| hulls[*k as usize]).collect();
-        self.blocks = vec![Block::new(); hulls.len()];
-        self.wholes = self.blocks.iter().map(Block::whole).collect();
+        self.blocks = vec![BoxBlock::new(); hulls.len()];
+        self.wholes = self.blocks.iter().map(BoxBlock::whole).collect();
         self.bvh = Bvh::new(&hulls);
     }
 

@@ -12,13 +12,13 @@ use crate::interval::Interval;
 const BULGE: f64 = 4.0 / 27.0;
 
 /// Positions (m) and velocities (m/s) of all vertices at both ends of a step.
-struct Courses<'a> {
+struct StepEnds<'a> {
     x: [&'a [Vector3<f64>]; 2],
     v: [&'a [Vector3<f64>]; 2],
     h: f64,
 }
 
-impl Courses<'_> {
+impl StepEnds<'_> {
     /// Returns the largest distance of vertex i from its straight course (m).
     fn stray(&self, i: usize) -> f64 {
         let chord = self.x[1][i] - self.x[0][i];
@@ -87,7 +87,7 @@ pub(crate) fn bulge(
         let (before, after) = (&mut motion.v0.points, &mut motion.v.points);
         surface.speeds(obstacles, t, &y0[half..2 * half], before);
         surface.speeds(obstacles, t + h, &y1[half..2 * half], after);
-        let courses = Courses { x: [begins, ends], v: [before, after], h };
+        let courses = StepEnds { x: [begins, ends], v: [before, after], h };
         let obstacles: Vec<_> = (obstacles.iter().map(|it| Around::of(it, [t, t + h]))).collect();
         let rigid = rigid_near(surface, &obstacles, &courses);
         let soft = soft.chain(&surface.drops.vertices).map(|i| *i as usize);
@@ -103,7 +103,7 @@ pub(crate) fn bulge(
 
 /// Returns the vertices of rigid bodies that come near something in a step: an obstacle or, if
 /// surfaces touch one another, soft ones and bodies that are not joined to theirs.
-fn rigid_near(surface: &Surface, obstacles: &[Around], courses: &Courses) -> Vec<usize> {
+fn rigid_near(surface: &Surface, obstacles: &[Around], courses: &StepEnds) -> Vec<usize> {
     let thickest = surface.thickest();
     let around = |center: usize, points: std::ops::Range<usize>| {
         let away = points.map(|i| (courses.x[0][i] - courses.x[0][center]).norm());

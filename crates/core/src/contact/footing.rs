@@ -11,7 +11,8 @@
 //! is as near to several.
 //!
 //! A vertex of cloth, of a box or of a mesh is repelled once by each flat face, whose inner edges
-//! and points repel nothing, and by all edges between faces: the surfaces below support it at many points.
+//! and points repel nothing, and by all edges between faces: the surfaces below support it at many
+//! points.
 
 use std::cmp::Ordering;
 
@@ -35,8 +36,8 @@ const NEIGHBOUR_SHARE: f64 = 2.0;
 /// falls beside the other.
 const ACROSS_SHARE: f64 = 0.5;
 
-/// Weight of each corner from which on a point is above the interior of a triangle, and nearer to no
-/// other one of the same face: more than rounding.
+/// Weight of each corner from which on a point is above the interior of a triangle, and nearer to
+/// no other one of the same face: more than rounding.
 const INNER_SHARE: f64 = 1e-6;
 
 /// Place at which one side of a pair touches a primitive of a rigid shape.
@@ -245,7 +246,7 @@ impl Surface {
                 let parts = own.map(|k| motion.v[pair.points[k] as usize] * (weights[k] * sign));
                 parts.sum::<Vector3<f64>>()
             });
-            Some(Seen {
+            Some(TouchingSide {
                 footing: footing??,
                 speeds,
                 party: self.vertex(pair.points[sides[side].start]),
@@ -261,7 +262,7 @@ impl Surface {
 }
 
 /// Side of a pair, where it touches.
-struct Seen {
+struct TouchingSide {
     footing: Footing,
     /// Velocities (m/s) of its closest point and of that of the other side.
     speeds: [Vector3<f64>; 2],
@@ -269,7 +270,7 @@ struct Seen {
     thickness: f64,
 }
 
-impl Seen {
+impl TouchingSide {
     /// Returns whether the side enters another range as it slides on the other side of a known
     /// contact.
     fn slides_on(&self, known: &Self) -> bool {

@@ -246,7 +246,7 @@ pub(super) fn hold(
     pass_until_still(|| {
         let points = &mut v.points;
 
-        let mut still = Arch::new().dispatch(Pass { contacts: &mut soft, v: points });
+        let mut still = Arch::new().dispatch(FrictionPass { contacts: &mut soft, v: points });
         for k in &rigid {
             let (contact, most) = &contacts[*k];
             let slip = contact.slip(v);
@@ -322,12 +322,12 @@ impl Soft {
 }
 
 /// Pass over contacts without rigid bodies.
-struct Pass<'a> {
+struct FrictionPass<'a> {
     contacts: &'a mut [Soft],
     v: &'a mut [Vector3<f64>],
 }
 
-impl WithSimd for Pass<'_> {
+impl WithSimd for FrictionPass<'_> {
     /// Whether no impulse changed by more than a tolerance.
     type Output = bool;
 

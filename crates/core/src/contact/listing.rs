@@ -165,7 +165,7 @@ impl Listing {
 type Primitives = ([u32; 2], [u32; 4]);
 
 /// Items with their trees.
-type Side<'a> = (&'a Items, &'a Trees);
+type ItemSide<'a> = (&'a Items, &'a Trees);
 
 /// Surface and courses that a list is made for.
 struct Query<'a> {
@@ -186,7 +186,7 @@ impl Query<'_> {
     #[expect(clippy::needless_bitwise_bool, reason = "a branch would be guessed wrong")]
     fn touching(
         &self,
-        [(first, first_trees), (second, second_trees)]: [Side; 2],
+        [(first, first_trees), (second, second_trees)]: [ItemSide; 2],
         blocks: &mut Vec<[u32; 2]>,
         pairs: &mut Vec<Listed>,
     ) {
@@ -204,7 +204,7 @@ impl Query<'_> {
     #[expect(clippy::needless_bitwise_bool, reason = "a branch would be guessed wrong")]
     fn crossing(
         &self,
-        [(first, first_trees), (second, second_trees)]: [Side; 2],
+        [(first, first_trees), (second, second_trees)]: [ItemSide; 2],
         blocks: &mut Vec<[u32; 2]>,
         pairs: &mut Vec<Listed>,
     ) {

@@ -281,7 +281,7 @@ impl Met<'_> {
     /// Finds the first touch of particle i in the step, at whose end its position and velocity are
     /// [x, v], if it begins outside. One that ends `inside` touches at the end of the step at the
     /// latest.
-    fn touch(&self, i: usize, [x, v]: [Vector3<f64>; 2], inside: bool) -> Option<Touch> {
+    fn touch(&self, i: usize, [x, v]: [Vector3<f64>; 2], inside: bool) -> Option<FirstTouch> {
         let (Interval { t, h }, n) = (self.span, self.inverse_masses.len());
         let course = Course { x: [row(self.x0?, n, i), x], v: [row(self.v0?, n, i), v], h };
         let approach = Approach::new(self.obstacle, &course, t);
@@ -310,7 +310,7 @@ impl Met<'_> {
             if begins { 0.0 } else { approach.first(flight.unwrap_or(0.0), depth).or(last)? };
         let (point, normal) = approach.touched(share);
         let pose = self.obstacle.at(t + share * h);
-        Some(Touch {
+        Some(FirstTouch {
             share,
             touches,
             end: [point, normal].map(|vector| self.after.outwards(vector)),
@@ -323,12 +323,12 @@ impl Met<'_> {
 
     /// Returns the effect of restitution on a particle, whose velocity at the end of the step is v,
     /// if there is any.
-    fn rebound(&self, i: usize, v: Vector3<f64>, touch: &Touch) -> Option<PointImpact> {
+    fn rebound(&self, i: usize, v: Vector3<f64>, touch: &FirstTouch) -> Option<PointImpact> {
         let (h, restitution) = (self.span.h, self.restitution);
         if restitution == 0.0 || touch.touches {
             return None;
         }
-        let Touch { share, there: [point, normal], ref pose, .. } = *touch;
+        let FirstTouch { share, there: [point, normal], ref pose, .. } = *touch;
         let carried = velocity(pose, point);
         let relative = touch.speed - carried;
         let [begun, ended] = [(touch.begun, &self.before), (v, &self.after)]
@@ -470,7 +470,7 @@ fn touched([carried, at]: [Vector3<f64>; 2], [depth, approach]: [f64; 2]) -> Vec
 }
 
 /// First touch of a particle and the obstacle in a step.
-struct Touch {
+struct FirstTouch {
     /// Share of the step after which they touch.
     share: f64,
     /// Whether they touch from the beginning.
@@ -486,7 +486,7 @@ struct Touch {
     speed: Vector3<f64>,
 }
 
-impl Touch {
+impl FirstTouch {
     /// Returns the position, in the plane of the touch, of a particle that has passed through the
     /// surface there. At the end of the step the particle is at d, relative to the obstacle's
     /// place, and `inside` is the nearest point of the surface if it is still inside.

@@ -53,7 +53,7 @@ pub(super) struct Pair {
 }
 
 /// State of a pair within its thickness.
-struct Within {
+struct TouchState {
     weights: [f64; 4],
     /// Unit vector from the second primitive to the first.
     normal: Vector3<f64>,
@@ -73,12 +73,12 @@ pub(crate) struct Stiffness {
 }
 
 impl Pair {
-    fn within(&self) -> Option<Within> {
+    fn within(&self) -> Option<TouchState> {
         let thickness = self.law.skin.thickness;
         let closest = closest(self.kind, &self.x);
         let (distance, normal) = closest.apart(self.kind)?;
         let share = (thickness - (distance - self.law.radius)) / thickness;
-        (share > 0.0).then_some(Within { weights: closest.weights, normal, share })
+        (share > 0.0).then_some(TouchState { weights: closest.weights, normal, share })
     }
 
     /// Returns the force F (N) and its derivative -dF/dg (N/m) at a penetration, as a share of the
@@ -168,7 +168,7 @@ impl Pair {
 
     /// Returns the forces on the four points (N), if there are any.
     pub fn forces(&self) -> Option<[Vector3<f64>; 4]> {
-        let Within { weights, normal, share } = self.within()?;
+        let TouchState { weights, normal, share } = self.within()?;
         let (factor, along) = self.crossing();
         let (force, _) = self.law_at(share);
         let (damping, _) = self.damping(share, normal.dot(&weighted(&weights, &self.v)));
@@ -186,7 +186,7 @@ impl Pair {
     /// Returns the magnitude of the force between the primitives (N), if there is any, with the
     /// weights of their closest points and the normal from the second to the first.
     pub fn force(&self) -> Option<(f64, [f64; 4], Vector3<f64>)> {
-        let Within { weights, normal, share } = self.within()?;
+        let TouchState { weights, normal, share } = self.within()?;
         let (damping, _) = self.damping(share, normal.dot(&weighted(&weights, &self.v)));
         let force = self.law_at(share).0 * damping * self.crossing().0;
         Some((force, weights, normal))
@@ -239,7 +239,7 @@ impl Pair {
     /// Returns the stiffness and damping, if there are any: the part of the differential that is
     /// positive semi-definite.
     pub fn stiffness(&self) -> Option<Stiffness> {
-        let Within { weights, normal, share } = self.within()?;
+        let TouchState { weights, normal, share } = self.within()?;
         let factor = self.crossing().0;
         let (force, slope) = self.law_at(share);
         let (damping, rate) = self.damping(share, normal.dot(&weighted(&weights, &self.v)));

@@ -28,7 +28,7 @@ const RELAXATION: f64 = 1.7;
 
 /// Springs with the same limit: `count` springs from i + k to j + k.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Row {
+struct SpringRun {
     i: usize,
     j: usize,
     count: usize,
@@ -46,7 +46,7 @@ struct Tether {
 /// Longest lengths of springs, and of tethers to pins.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StrainLimit {
-    rows: Vec<Row>,
+    rows: Vec<SpringRun>,
     tethers: Vec<Tether>,
 }
 
@@ -67,7 +67,7 @@ impl StrainLimit {
         springs: impl IntoIterator<Item = ([usize; 2], f64)>,
         inverse_masses: &[f64],
     ) -> Self {
-        let mut rows: Vec<Row> = vec![];
+        let mut rows: Vec<SpringRun> = vec![];
         for ([i, j], longest) in springs {
             if inverse_masses[i] + inverse_masses[j] == 0.0 {
                 continue;
@@ -79,7 +79,7 @@ impl StrainLimit {
                 {
                     row.count += 1;
                 }
-                _ => rows.push(Row { i, j, count: 1, longest }),
+                _ => rows.push(SpringRun { i, j, count: 1, longest }),
             }
         }
         let tethers = tethers(&rows, inverse_masses);
@@ -91,7 +91,7 @@ impl StrainLimit {
     #[must_use]
     pub fn excess(&self, x: &[f64]) -> f64 {
         let n = x.len() / 3;
-        let of_row = |row: &Row| {
+        let of_row = |row: &SpringRun| {
             let axes = [0, n, 2 * n].map(|axis| {
                 let (i, j) = (axis + row.i, axis + row.j);
                 (&x[i..i + row.count], &x[j..j + row.count])
@@ -144,7 +144,7 @@ impl StrainLimiter {
         }
         self.moments.clear();
         self.moments.resize(3 * n, 0.0);
-        let mut ends = Ends { x, moments: &mut self.moments, inverse_masses };
+        let mut ends = RunEnds { x, moments: &mut self.moments, inverse_masses };
         while strained.sweeps < MAX_SWEEPS {
             strained.sweeps += 1;
             for tether in &limit.tethers {
@@ -190,13 +190,13 @@ impl StrainLimiter {
 }
 
 /// Particles at the ends of springs.
-struct Ends<'a> {
+struct RunEnds<'a> {
     x: &'a mut [f64],
     moments: &'a mut [f64],
     inverse_masses: &'a [f64],
 }
 
-impl Ends<'_> {
+impl RunEnds<'_> {
     /// Moves particles i and j towards each other, by their excess distance over `longest` (m)
     /// times a factor. Returns the excess (m).
     fn shorten(&mut self, [i, j]: [usize; 2], longest: f64, factor: f64) -> f64 {
@@ -222,7 +222,7 @@ impl Ends<'_> {
 
 /// Returns the tethers of all particles that springs connect to a pin: to the nearest pin, by the
 /// sum of longest lengths along springs (Dijkstra, 1959).
-fn tethers(rows: &[Row], inverse_masses: &[f64]) -> Vec<Tether> {
+fn tethers(rows: &[SpringRun], inverse_masses: &[f64]) -> Vec<Tether> {
     let n = inverse_masses.len();
     let mut nearest = vec![(f64::INFINITY, 0); n];
     // The bits of non-negative numbers have the order of the numbers.

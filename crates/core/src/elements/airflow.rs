@@ -79,20 +79,20 @@ impl Airflow {
     fn add_in(&self, bands: usize, at: &At, f: &mut [f64]) {
         let n = f.len() / 3;
         fork(bands, 0..n, 1, columns_mut(f), &|particles, f| {
-            Arch::new().dispatch(Push { airflow: self, at, particles, f });
+            Arch::new().dispatch(AirflowTask { airflow: self, at, particles, f });
         });
     }
 }
 
 /// Task that adds the forces on some particles to f.
-struct Push<'a> {
+struct AirflowTask<'a> {
     airflow: &'a Airflow,
     at: &'a At<'a>,
     particles: Range<usize>,
     f: Columns<'a, 3>,
 }
 
-impl WithSimd for Push<'_> {
+impl WithSimd for AirflowTask<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -116,7 +116,7 @@ impl WithSimd for Push<'_> {
     }
 }
 
-impl Push<'_> {
+impl AirflowTask<'_> {
     #[inline(always)]
     fn has(&self, i: u32) -> bool {
         self.particles.contains(&(i as usize))

@@ -208,19 +208,19 @@ impl Wind {
 
 impl ByParticle for Wind {
     fn add(&self, t: f64, x: [&[f64]; 3], f: &mut [&mut [f64]; 3]) {
-        Arch::new().dispatch(Blow { wind: self, t, x, f });
+        Arch::new().dispatch(WindTask { wind: self, t, x, f });
     }
 }
 
 /// Task that adds the forces on particles at x to f.
-struct Blow<'a, 'b> {
+struct WindTask<'a, 'b> {
     wind: &'a Wind,
     t: f64,
     x: [&'a [f64]; 3],
     f: &'a mut [&'b mut [f64]; 3],
 }
 
-impl WithSimd for Blow<'_, '_> {
+impl WithSimd for WindTask<'_, '_> {
     type Output = ();
 
     #[inline(always)]

@@ -25,11 +25,11 @@ pub struct ClosedMesh {
     normals: Vec<Vector3<f64>>,
     /// Outward normals of the triangles, and those of the sides opposite to their corners, of any
     /// length.
-    faces: Vec<Face>,
+    faces: Vec<MeshFace>,
     /// All triangles.
-    whole: Tree,
+    whole: MeshTree,
     /// Triangles of each solid, if there are several.
-    solids: Vec<Tree>,
+    solids: Vec<MeshTree>,
     /// Boxes around the solids.
     places: Bvh,
     /// Greatest distance of a point from the origin (m).
@@ -38,13 +38,13 @@ pub struct ClosedMesh {
 
 /// Some triangles, and boxes around them.
 #[derive(Clone, Debug)]
-struct Tree {
+struct MeshTree {
     triangles: Vec<u32>,
     boxes: Bvh,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Face {
+struct MeshFace {
     normal: Vector3<f64>,
     sides: [Vector3<f64>; 3],
 }
@@ -109,7 +109,7 @@ impl ClosedMesh {
         let mut edges: Vec<_> = sides.filter(|[a, b]| a < b).collect();
         edges.sort_unstable();
         let all: Vec<_> = (0..triangles.len() as u32).collect();
-        let whole = Tree::new(&points, &triangles, all);
+        let whole = MeshTree::new(&points, &triangles, all);
         let mut solids = vec![];
         if count > 1 {
             let mut own = vec![vec![]; count];
@@ -117,7 +117,7 @@ impl ClosedMesh {
                 own[*part as usize].push(k as u32);
             }
             own.retain(|triangles| !triangles.is_empty());
-            solids.extend(own.into_iter().map(|own| Tree::new(&points, &triangles, own)));
+            solids.extend(own.into_iter().map(|own| MeshTree::new(&points, &triangles, own)));
         }
         let boxes: Vec<_> = solids.iter().filter_map(|solid| solid.boxes.bounds()).collect();
         Self {
@@ -170,7 +170,7 @@ impl ClosedMesh {
     }
 
     /// Returns whether a point d is inside a solid.
-    fn is_inside(&self, solid: &Tree, d: Vector3<f64>) -> bool {
+    fn is_inside(&self, solid: &MeshTree, d: Vector3<f64>) -> bool {
         self.offset_inside(solid, d).is_some()
     }
 
@@ -215,7 +215,7 @@ impl ClosedMesh {
     /// surface it is farthest. Also returns the vector from there and the normal there.
     fn deepest(&self, d: Vector3<f64>, but: &[u32]) -> Option<(u32, Vector3<f64>, Vector3<f64>)> {
         let mut deepest: Option<(u32, Vector3<f64>, Vector3<f64>)> = None;
-        let mut check = |k: u32, solid: &Tree| {
+        let mut check = |k: u32, solid: &MeshTree| {
             let Some((offset, normal)) = self.offset_inside(solid, d) else {
                 return;
             };
@@ -271,7 +271,11 @@ impl ClosedMesh {
     }
 
     /// Returns the vector from the nearest point to a point d inside a solid, and the normal there.
-    fn offset_inside(&self, solid: &Tree, d: Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
+    fn offset_inside(
+        &self,
+        solid: &MeshTree,
+        d: Vector3<f64>,
+    ) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let bounds = solid.boxes.bounds()?;
         let found = (bounds.squared_distance(&d) == 0.0).then(|| self.offset_from(solid, d));
         found?.filter(|(offset, normal)| normal.dot(offset) < 0.0)
@@ -279,7 +283,11 @@ impl ClosedMesh {
 
     /// Returns the vector from the nearest point to d, and the normal there, for the triangles in a
     /// tree.
-    fn offset_from(&self, tree: &Tree, d: Vector3<f64>) -> Option<(Vector3<f64>, Vector3<f64>)> {
+    fn offset_from(
+        &self,
+        tree: &MeshTree,
+        d: Vector3<f64>,
+    ) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let (k, nearest) = tree.boxes.nearest(&d, |k| {
             let t = self.triangles[tree.triangles[k as usize] as usize];
             let [a, b, c] = t.map(|i| self.points[i as usize]);
@@ -305,7 +313,7 @@ impl ClosedMesh {
 }
 
 /// Computes the normals of the points, of the triangles and of their sides.
-fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> (Vec<Vector3<f64>>, Vec<Face>) {
+fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> (Vec<Vector3<f64>>, Vec<MeshFace>) {
     let mut corners = vec![Vector3::zeros(); points.len()];
     let mut sides: BTreeMap<[u32; 2], Vector3<f64>> = BTreeMap::new();
     let side = |t: &[u32; 3], k: usize| {
@@ -331,7 +339,7 @@ fn normals(points: &[Vector3<f64>], triangles: &[[u32; 3]]) -> (Vec<Vector3<f64>
     let faces = triangles
         .iter()
         .zip(own)
-        .map(|(t, normal)| Face { normal, sides: [0, 1, 2].map(|k| sides[&side(t, k)]) });
+        .map(|(t, normal)| MeshFace { normal, sides: [0, 1, 2].map(|k| sides[&side(t, k)]) });
     (corners, faces.collect())
 }
 
@@ -347,7 +355,7 @@ fn volume(points: &[Vector3<f64>], triangle: &[u32; 3]) -> f64 {
     a.cross(&b).dot(&c) / 6.0
 }
 
-impl Tree {
+impl MeshTree {
     fn new(points: &[Vector3<f64>], triangles: &[[u32; 3]], own: Vec<u32>) -> Self {
         let around = |k: &u32| Aabb::around(triangles[*k as usize].map(|i| points[i as usize]));
         Self { boxes: Bvh::new(&own.iter().map(around).collect::<Vec<_>>()), triangles: own }

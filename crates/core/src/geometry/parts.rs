@@ -13,7 +13,7 @@ const ANGLE_TOLERANCE: f64 = 1e-9;
 /// Passage of a triangle along an edge: its corners at the lower and at the upper end of the edge,
 /// and whether it passes upwards.
 #[derive(Clone, Copy)]
-struct Side {
+struct EdgePassage {
     corners: [u32; 2],
     is_up: bool,
 }
@@ -84,7 +84,7 @@ pub(super) fn split(points: Vec<Vector3<f64>>, triangles: &[[u32; 3]]) -> Result
 }
 
 /// Lists the passages of triangles along edges, sorted by edge.
-fn sides(triangles: &[[u32; 3]]) -> Vec<([u32; 2], Side)> {
+fn sides(triangles: &[[u32; 3]]) -> Vec<([u32; 2], EdgePassage)> {
     let mut sides = Vec::with_capacity(3 * triangles.len());
     for (k, t) in triangles.iter().enumerate() {
         for from in 0..3 {
@@ -95,7 +95,7 @@ fn sides(triangles: &[[u32; 3]]) -> Vec<([u32; 2], Side)> {
                 corners.reverse();
             }
             let edge = [t[from].min(t[to]), t[from].max(t[to])];
-            sides.push((edge, Side { corners, is_up }));
+            sides.push((edge, EdgePassage { corners, is_up }));
         }
     }
     sides.sort_unstable_by_key(|(edge, side)| (*edge, side.corners));
@@ -105,16 +105,20 @@ fn sides(triangles: &[[u32; 3]]) -> Vec<([u32; 2], Side)> {
 /// Sorts the triangles at an edge by their angle around it, seen against its direction; `third` is
 /// each one's corner off the edge. Of triangles at the same angle, those whose solid is behind them
 /// come first.
-fn sort(sides: &mut Vec<Side>, [a, b]: [Vector3<f64>; 2], third: impl Fn(&Side) -> Vector3<f64>) {
+fn sort(
+    sides: &mut Vec<EdgePassage>,
+    [a, b]: [Vector3<f64>; 2],
+    third: impl Fn(&EdgePassage) -> Vector3<f64>,
+) {
     let along = (b - a).try_normalize(0.0).unwrap_or_default();
-    let from_edge = |side: &Side| {
+    let from_edge = |side: &EdgePassage| {
         let d = third(side) - a;
         d - along * along.dot(&d)
     };
     let zero = from_edge(&sides[0]);
     let ahead = along.cross(&zero);
     let turn = std::f64::consts::TAU;
-    let angle = |side: &Side| {
+    let angle = |side: &EdgePassage| {
         let d = from_edge(side);
         let angle = libm::atan2(ahead.dot(&d), along.norm() * zero.dot(&d));
         let angle = if angle < -ANGLE_TOLERANCE { angle + turn } else { angle };
@@ -130,7 +134,7 @@ fn sort(sides: &mut Vec<Side>, [a, b]: [Vector3<f64>; 2], third: impl Fn(&Side) 
 
 /// Pairs the triangles at an edge that bound the same solid. The solid begins behind a triangle
 /// that passes the edge downwards and ends at one that passes it upwards.
-fn pairs(sides: &[Side]) -> Vec<[Side; 2]> {
+fn pairs(sides: &[EdgePassage]) -> Vec<[EdgePassage; 2]> {
     let (mut begun, mut pairs) = (vec![], vec![]);
     let mut is_paired = vec![false; sides.len()];
     // Twice around, as a solid may extend across the first angle.

@@ -92,7 +92,7 @@ impl EmbeddedPair {
 }
 
 /// The end of a step.
-struct End<'a> {
+struct EndTask<'a> {
     tableau: &'static Tableau,
     h: f64,
     y0: &'a [f64],
@@ -104,7 +104,7 @@ struct End<'a> {
 
 /// Sums of squares: of y0, of y1 and of the estimated errors, over the allowed ones if there are
 /// such.
-impl OnBlock<1, 4> for End<'_> {
+impl OnBlock<1, 4> for EndTask<'_> {
     #[expect(
         clippy::inline_always,
         reason = "what is inlined into pulp's dispatch is compiled for the vectors that it found"
@@ -173,7 +173,7 @@ impl Trial for EmbeddedPair {
         let LastStep { y0, y1, k, .. } = &mut self.last;
         let bands = threads(y0.len() / 6);
         let [error, other] = norm.of_sums(|numbers, allowed| {
-            let end = End { tableau, h, y0, k, forms: !forms, allowed };
+            let end = EndTask { tableau, h, y0, k, forms: !forms, allowed };
             let y1 = &mut y1[numbers.clone()];
             add_up(bands, numbers, BLOCK, [y1], &end)
         });

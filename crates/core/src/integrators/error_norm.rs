@@ -73,7 +73,7 @@ pub(super) struct ErrorNorm<'a> {
 
 /// Sums of squares over the numbers that belong to one quantity.
 #[derive(Clone, Copy, Default)]
-struct Sums {
+struct SquareSums {
     count: f64,
     y0: f64,
     y1: f64,
@@ -144,7 +144,7 @@ impl ErrorNorm<'_> {
         mut sums: impl FnMut(Range<usize>, Option<&Allowed>) -> [f64; 4],
         leaves_out: bool,
     ) -> impl Iterator<Item = ([f64; 2], Tolerated)> {
-        let mut all = [Sums::default(); QUANTITIES];
+        let mut all = [SquareSums::default(); QUANTITIES];
         let plain = Allowed {
             tolerance: self.tolerance,
             sizes: self.sizes,

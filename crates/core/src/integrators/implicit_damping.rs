@@ -57,11 +57,11 @@ struct ImplicitDamping {
     /// Verlet's method, for forces that do not depend on v.
     verlet: Box<dyn Integrator>,
     /// The solver for forces that do.
-    solver: Option<Solver>,
+    solver: Option<KickSolver>,
 }
 
 /// Solver of the equations of a kick, with its scratch.
-enum Solver {
+enum KickSolver {
     /// For a linearised system of masses without constraints.
     Sparse {
         linear: Box<DampingSolver>,
@@ -78,7 +78,7 @@ struct Kicked<'a>(&'a dyn ParticleSystem);
 
 impl ImplicitDamping {
     fn new(system: &dyn ParticleSystem) -> Self {
-        let solver = || Solver::new(system);
+        let solver = || KickSolver::new(system);
         Self {
             dim: system.dim(),
             verlet: VERLET_PLAN.integrator(system),
@@ -99,7 +99,7 @@ impl Integrator for ImplicitDamping {
         if !reads_velocity(system) {
             return self.verlet.step(system, t, h, y);
         }
-        let solver = self.solver.get_or_insert_with(|| Solver::new(system));
+        let solver = self.solver.get_or_insert_with(|| KickSolver::new(system));
         let half = 0.5 * h;
         drift_of(system, t, half, y)?;
         let work = solver.kick(system, t + half, h, y)?;
@@ -108,7 +108,7 @@ impl Integrator for ImplicitDamping {
     }
 }
 
-impl Solver {
+impl KickSolver {
     fn new(system: &dyn ParticleSystem) -> Self {
         let zeros = |length: usize| vec![0.0; length];
         match linearized(system) {

@@ -59,9 +59,9 @@ pub(super) struct NystromPair {
 
 /// Returns the drag of a system whose other forces do not depend on the velocity; `None` for other
 /// systems.
-fn drag(system: &dyn ParticleSystem) -> Option<(&dyn Mechanics, Drag<'_>)> {
+fn drag(system: &dyn ParticleSystem) -> Option<(&dyn Mechanics, SystemDrag<'_>)> {
     let mechanics = system.mechanics()?;
-    let drag = Drag {
+    let drag = SystemDrag {
         coefficient: mechanics.drag_coefficient(),
         inverse_masses: mechanics.inverse_masses(),
     };
@@ -75,14 +75,14 @@ fn refused(method: &'static str) -> Error {
 
 /// Viscous drag of a system.
 #[derive(Clone, Copy)]
-struct Drag<'a> {
+struct SystemDrag<'a> {
     /// Coefficient (kg/s).
     coefficient: f64,
     /// Inverse masses of the particles (1/kg).
     inverse_masses: &'a [f64],
 }
 
-impl Drag<'_> {
+impl SystemDrag<'_> {
     /// Visits runs of equal masses in a range of numbers of an n x 3 matrix, counted from its
     /// start, with g = c / (2 m) (1/s) of each; none without drag.
     fn runs(&self, numbers: Range<usize>, mut visit: impl FnMut(Range<usize>, f64)) {
@@ -104,16 +104,16 @@ impl Drag<'_> {
 }
 
 /// A system whose forces depend on velocities by drag only, and a step of it.
-struct Step<'a> {
+struct DraggedStep<'a> {
     mechanics: &'a dyn Mechanics,
-    drag: Drag<'a>,
+    drag: SystemDrag<'a>,
     /// Time at the beginning (s).
     t: f64,
     /// Length (s).
     h: f64,
 }
 
-impl Step<'_> {
+impl DraggedStep<'_> {
     /// Writes `h^2 sum weights k` to `x`, plus s v0; then multiplies by exp(-g s), by which w
     /// becomes x - x0, and adds x0. Without `y0`, leaves out v0 and x0.
     fn positions(
@@ -211,14 +211,14 @@ impl NystromPair {
     }
 
     /// Creates the step of h (s) from t (s) with this system, if the system allows it.
-    fn of(system: &dyn ParticleSystem, t: f64, h: f64) -> Option<Step<'_>> {
+    fn of(system: &dyn ParticleSystem, t: f64, h: f64) -> Option<DraggedStep<'_>> {
         let (mechanics, drag) = drag(system)?;
-        Some(Step { mechanics, drag, t, h })
+        Some(DraggedStep { mechanics, drag, t, h })
     }
 
     /// Evaluates the stages of a step after [`begin`](Trial::begin) or
     /// [`start_from_end`](Trial::start_from_end), and computes its end. Returns the cost.
-    fn stages(&mut self, step: &Step) -> Work {
+    fn stages(&mut self, step: &DraggedStep) -> Work {
         let tableau = self.tableau;
         let LastStep { h, y0, y1, k, .. } = &mut self.last;
         *h = step.h;
@@ -235,7 +235,7 @@ impl NystromPair {
     }
 
     /// Evaluates the acceleration at the end of the step. Returns the cost.
-    fn finish(&mut self, step: &Step) -> Work {
+    fn finish(&mut self, step: &DraggedStep) -> Work {
         let LastStep { y0, y1, k, .. } = &mut self.last;
         let x1 = &y1[..self.x.len()];
         let [.., as_stage, end] = &mut k[..] else {

@@ -134,7 +134,7 @@ impl Method {
         + 'static,
     ) -> Result<Self, Error> {
         let name = name.into();
-        let step: &'static Step = Box::leak(Box::new(step));
+        let step: &'static StepFunction = Box::leak(Box::new(step));
         let named = name.clone();
         Self::new(name, order, move |system| {
             Box::new(Stepped { name: named.clone(), dim: system.dim(), step })
@@ -312,13 +312,14 @@ fn check_name(name: &str, has_words: bool) -> Result<(), Error> {
 }
 
 /// Function that takes a step.
-type Step = dyn Fn(&mut Derivative, f64, &[f64], f64) -> Result<Vec<f64>, Error> + Send + Sync;
+type StepFunction =
+    dyn Fn(&mut Derivative, f64, &[f64], f64) -> Result<Vec<f64>, Error> + Send + Sync;
 
 /// Integrator of a method that is a function.
 struct Stepped {
     name: String,
     dim: usize,
-    step: &'static Step,
+    step: &'static StepFunction,
 }
 
 impl Integrator for Stepped {

@@ -18,7 +18,7 @@ const MAX_ORDER: usize = 10;
 const TOLERANCE: f64 = 1e-9;
 
 /// Rooted tree, as far as a method sees it.
-struct Tree {
+struct RootedTree {
     /// Number of its nodes.
     nodes: usize,
     /// `sum a_ij u_j` for each stage i.
@@ -152,7 +152,7 @@ fn known_order(what: &str, rows: &[Vec<f64>], weights: &[f64]) -> Result<u32, Er
 /// Returns the order of the method with these stages: of each one, its weights of those before it.
 /// 0 if the weights b do not sum to 1.
 fn order_of(stages: &[Vec<f64>], b: &[f64]) -> u32 {
-    let mut trees: Vec<Tree> = vec![];
+    let mut trees: Vec<RootedTree> = vec![];
     for nodes in 1..=MAX_ORDER {
         let known = trees.len();
         let root = (vec![1.0; b.len()], 1.0 / nodes as f64);
@@ -165,7 +165,7 @@ fn order_of(stages: &[Vec<f64>], b: &[f64]) -> u32 {
             }
             let sums = |row: &Vec<f64>| row.iter().zip(&u).map(|(a, u)| a * u).sum();
             let above = stages.iter().map(sums).collect();
-            trees.push(Tree { nodes, above, share });
+            trees.push(RootedTree { nodes, above, share });
         }
     }
     MAX_ORDER as u32
@@ -175,7 +175,7 @@ fn order_of(stages: &[Vec<f64>], b: &[f64]) -> u32 {
 /// among the first `known` trees, listed from the last to the first, so that each set is found
 /// once.
 fn grow(
-    trees: &[Tree],
+    trees: &[RootedTree],
     left: usize,
     known: usize,
     (u, share): (Vec<f64>, f64),

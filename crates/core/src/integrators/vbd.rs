@@ -47,7 +47,7 @@ struct Vbd {
     prediction: Prediction,
     /// Velocities v* (m/s).
     predicted: Vec<f64>,
-    ends: Ends,
+    ends: SpringEnds,
 }
 
 impl Vbd {
@@ -56,7 +56,7 @@ impl Vbd {
             iterations,
             prediction: Prediction::new(system.dim() / 6),
             predicted: vec![0.0; system.dim() / 2],
-            ends: Ends::default(),
+            ends: SpringEnds::default(),
         };
         if let Ok(system) = springs_of(system, METHOD.name) {
             vbd.ends.list(system);
@@ -67,14 +67,14 @@ impl Vbd {
 
 /// The ends of all springs, particle by particle.
 #[derive(Default)]
-struct Ends {
+struct SpringEnds {
     /// End index in `springs` of the springs of each particle.
     until: Vec<usize>,
     /// The particle at the other end, and the law.
     springs: Vec<(usize, SpringLaw)>,
 }
 
-impl Ends {
+impl SpringEnds {
     /// Lists the springs of a system by their ends.
     fn list(&mut self, system: &dyn Compliant) {
         let Self { until, springs } = self;

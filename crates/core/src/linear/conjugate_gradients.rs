@@ -143,7 +143,7 @@ impl ConjugateGradients {
     fn turn(&mut self, [step, turn]: [f64; 2], x: &mut [f64], multigrid: Option<&Multigrid>) {
         let Self { z, p, .. } = self;
         let ([a, b, c], [d, e, f]) = (columns_mut(x), columns_mut(p));
-        let task = Turn { step, share: turn, z, multigrid };
+        let task = TurnTask { step, share: turn, z, multigrid };
         add_up(z.len() / 3, [a, b, c, d, e, f], &task);
     }
 }
@@ -192,7 +192,7 @@ impl OnBlock<6, 2> for Descent<'_> {
     }
 }
 
-struct Turn<'a> {
+struct TurnTask<'a> {
     step: f64,
     /// Factor of the old direction in the new one.
     share: f64,
@@ -200,7 +200,7 @@ struct Turn<'a> {
     multigrid: Option<&'a Multigrid>,
 }
 
-impl OnBlock<6, 0> for Turn<'_> {
+impl OnBlock<6, 0> for TurnTask<'_> {
     #[inline(always)]
     fn run(&self, particles: Range<usize>, [a, b, c, d, e, f]: Columns<6>) -> [f64; 0] {
         let (x, mut p, z) = ([a, b, c], [d, e, f], columns(self.z, &particles));

@@ -150,13 +150,13 @@ enum Whole {
 }
 
 /// Connected parts of the surfaces of a network.
-struct Parts {
+struct ConnectedParts {
     sets: Sets,
     /// Number of each part, counted from 1, and number of its particles, by its smallest particle.
     sizes: BTreeMap<u32, (usize, usize)>,
 }
 
-impl Parts {
+impl ConnectedParts {
     fn of(network: &Network) -> Self {
         let mut sets = Sets::new(network.particles());
         let edges = network.touch().into_iter().flat_map(|touch| &touch.edges);
@@ -248,7 +248,7 @@ impl fmt::Display for Description<'_> {
         if !more.is_empty() {
             write!(f, ", and so do {} other pairs", more.len())?;
         }
-        let mut parts = Parts::of(self.network);
+        let mut parts = ConnectedParts::of(self.network);
         let count = parts.sizes.len();
         if count < 2 {
             return Ok(());

@@ -150,7 +150,7 @@ pub(super) fn has_joints(network: &Network) -> bool {
 /// Changes the velocities in the state y by the least amount, weighted by the masses, so that all
 /// constraints stay met. Ropes and ends of joints hold where they are passed.
 pub(crate) fn project_velocities(network: &Network, y: &mut [f64]) {
-    push(network, y, (Projected::Velocities, true), Metric::Masses);
+    push(network, y, (Projected::Velocities, true), ChangeMeasure::Masses);
 }
 
 /// Moves the state y by the least distance, weighted by the masses, to where all constraints are
@@ -159,13 +159,14 @@ pub(crate) fn project_velocities(network: &Network, y: &mut [f64]) {
 pub(crate) fn project(network: &Network, y: &mut [f64], ends_hold: bool) {
     let size = network.halves(y).0.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     for _ in 0..MAX_ITERATIONS {
-        let [moved, turned] = push(network, y, (Projected::Places, ends_hold), Metric::Masses);
+        let [moved, turned] =
+            push(network, y, (Projected::Places, ends_hold), ChangeMeasure::Masses);
         // Written so that NaN ends the iteration.
         if !(moved > ROUNDING * size || turned > ROUNDING) {
             break;
         }
     }
-    push(network, y, (Projected::Velocities, ends_hold), Metric::Masses);
+    push(network, y, (Projected::Velocities, ends_hold), ChangeMeasure::Masses);
 }
 
 /// Returns a constraint that cannot be met near the state y at time t (s), or soon after, because
@@ -193,7 +194,7 @@ fn approach(network: &Network, y: &mut [f64], radius: f64) -> Option<Unmet> {
         if worst.share <= MET_SHARE || worst.share.is_nan() {
             return None;
         }
-        push(network, y, (Projected::Places, true), Metric::Alike(most));
+        push(network, y, (Projected::Places, true), ChangeMeasure::Alike(most));
     }
     let worst = network.worst_constraint(y, radius);
     worst.filter(|worst| worst.share > UNMET_SHARE)
@@ -215,7 +216,7 @@ fn shake(network: &Network, most: f64, y: &mut [f64]) {
 
 /// Measure of the changes of a step, which are the least.
 #[derive(Clone, Copy)]
-enum Metric {
+enum ChangeMeasure {
     /// They are weighted by the masses.
     Masses,
     /// All that moves has the same mass, and moves by no more than that distance (m).
@@ -228,7 +229,7 @@ fn push(
     network: &Network,
     y: &mut [f64],
     (what, ends_hold): (Projected, bool),
-    metric: Metric,
+    metric: ChangeMeasure,
 ) -> [f64; 2] {
     let n = network.particles();
     let none = (vec![0.0; 3 * n], vec![0.0; 3 * network.bodies().len()]);
@@ -237,12 +238,12 @@ fn push(
     let loads = Loads { x: state[0], f: &none.0, torques: &none.1 };
     let (masses, inverse_masses) = (network.masses(), network.particles.inverse_masses());
     let scale = |mass: f64| match metric {
-        Metric::Masses => 1.0,
-        Metric::Alike(_) => mass,
+        ChangeMeasure::Masses => 1.0,
+        ChangeMeasure::Alike(_) => mass,
     };
     let most = match metric {
-        Metric::Masses => f64::INFINITY,
-        Metric::Alike(most) => most,
+        ChangeMeasure::Masses => f64::INFINITY,
+        ChangeMeasure::Alike(most) => most,
     };
     let weight = |i: usize| inverse_masses[i] * scale(masses[i]);
     let turning = |k: usize| {

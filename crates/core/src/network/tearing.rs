@@ -89,8 +89,8 @@ impl Tears {
         let mut torn: Vec<_> = springs.iter().filter(|s| is_too_long(s)).map(ends).collect();
         torn.sort_unstable();
         let holds = |s: &&Spring| torn.binary_search(&ends(s)).is_err();
-        let before = Neighbours::by(springs.iter());
-        let after = Neighbours::by(springs.iter().filter(holds));
+        let before = JoinedPairs::by(springs.iter());
+        let after = JoinedPairs::by(springs.iter().filter(holds));
         let is_cut = |s: &&Spring| {
             s.kind == SpringKind::Bend && before.share(s.i, s.j) && !after.share(s.i, s.j)
         };
@@ -101,9 +101,9 @@ impl Tears {
 }
 
 /// Sorted pairs of particles that structural springs join, each in both orders.
-struct Neighbours(Vec<[usize; 2]>);
+struct JoinedPairs(Vec<[usize; 2]>);
 
-impl Neighbours {
+impl JoinedPairs {
     fn by<'a>(springs: impl Iterator<Item = &'a Spring>) -> Self {
         let structural = springs.filter(|s| s.kind == SpringKind::Structural);
         let mut pairs: Vec<_> = structural.flat_map(|s| [[s.i, s.j], [s.j, s.i]]).collect();

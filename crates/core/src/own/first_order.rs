@@ -8,14 +8,14 @@ use crate::scene::Model;
 use crate::system::{ParticleSystem, evaluation_cost};
 
 /// Function of t and y that writes numbers.
-type Function = dyn Fn(f64, &[f64], &mut [f64]) -> Result<(), String> + Send + Sync;
+type RateFunction = dyn Fn(f64, &[f64], &mut [f64]) -> Result<(), String> + Send + Sync;
 /// Function of t and y that adds the row, the column and the value of each entry of a matrix.
 type Entries = dyn Fn(f64, &[f64], &mut Vec<(u32, u32, f64)>) -> Result<(), String> + Send + Sync;
 
 /// The Jacobian as a function.
-enum Jacobian {
+enum JacobianFunction {
     Unknown,
-    Full(Box<Function>),
+    Full(Box<RateFunction>),
     Sparse(Box<Entries>),
 }
 
@@ -47,14 +47,14 @@ enum Jacobian {
 /// ```
 pub struct Ode {
     dim: usize,
-    f: Box<Function>,
-    jacobian: Jacobian,
+    f: Box<RateFunction>,
+    jacobian: JacobianFunction,
     /// Row and column of each entry of the Jacobian that may differ from 0, if they are known.
     sparsity: Vec<(u32, u32)>,
     /// Row, column and value of each entry of the mass matrix, column by column; empty if it is 1.
     mass: Vec<(u32, u32, f64)>,
     scales: Vec<f64>,
-    quantities: Option<(usize, Box<Function>)>,
+    quantities: Option<(usize, Box<RateFunction>)>,
     /// Times at which f jumps (s), in order.
     jumps: Vec<f64>,
     evaluation_cost: f64,
@@ -77,7 +77,7 @@ impl Ode {
         Ok(Self {
             dim,
             f: Box::new(move |t, y, dydt| f(t, y, dydt).outcome()),
-            jacobian: Jacobian::Unknown,
+            jacobian: JacobianFunction::Unknown,
             sparsity: vec![],
             mass: vec![],
             scales: vec![],
@@ -97,7 +97,9 @@ impl Ode {
         jacobian: impl Fn(f64, &[f64], &mut [f64]) -> R + Send + Sync + 'static,
     ) -> Self {
         Self {
-            jacobian: Jacobian::Full(Box::new(move |t, y, out| jacobian(t, y, out).outcome())),
+            jacobian: JacobianFunction::Full(Box::new(move |t, y, out| {
+                jacobian(t, y, out).outcome()
+            })),
             ..self
         }
     }
@@ -111,7 +113,9 @@ impl Ode {
         entries: impl Fn(f64, &[f64], &mut Vec<(u32, u32, f64)>) -> R + Send + Sync + 'static,
     ) -> Self {
         Self {
-            jacobian: Jacobian::Sparse(Box::new(move |t, y, out| entries(t, y, out).outcome())),
+            jacobian: JacobianFunction::Sparse(Box::new(move |t, y, out| {
+                entries(t, y, out).outcome()
+            })),
             ..self
         }
     }
@@ -125,7 +129,7 @@ impl Ode {
     pub fn with_sparsity(self, mut entries: Vec<(u32, u32)>) -> Result<Self, Error> {
         let dim = self.dim;
         if let Some(wrong) = entries.iter().find(|entry| is_outside(dim, **entry)) {
-            return Err(Error::Invalid(outside("the Jacobian", dim, *wrong)));
+            return Err(Error::Invalid(outside("the JacobianFunction", dim, *wrong)));
         }
         entries.sort_unstable_by_key(|(row, column)| (*column, *row));
         entries.dedup();
@@ -264,7 +268,7 @@ impl Ode {
         let own = self.jumps;
         // At a jump, f is that after it: a step that comes from there needs the one before.
         let back = Arc::new(move |t: f64| if own.contains(&-t) { (-t).next_down() } else { -t });
-        let reversed = |function: Box<Function>, sign: f64| -> Box<Function> {
+        let reversed = |function: Box<RateFunction>, sign: f64| -> Box<RateFunction> {
             let back = back.clone();
             Box::new(move |t, y, out| {
                 function(back(t), y, out)?;
@@ -275,11 +279,11 @@ impl Ode {
             })
         };
         let jacobian = match self.jacobian {
-            Jacobian::Unknown => Jacobian::Unknown,
-            Jacobian::Full(jacobian) => Jacobian::Full(reversed(jacobian, -1.0)),
-            Jacobian::Sparse(write) => {
+            JacobianFunction::Unknown => JacobianFunction::Unknown,
+            JacobianFunction::Full(jacobian) => JacobianFunction::Full(reversed(jacobian, -1.0)),
+            JacobianFunction::Sparse(write) => {
                 let back = back.clone();
-                Jacobian::Sparse(Box::new(move |t, y, entries| {
+                JacobianFunction::Sparse(Box::new(move |t, y, entries| {
                     write(back(t), y, entries)?;
                     for entry in entries {
                         entry.2 = -entry.2;
@@ -325,8 +329,8 @@ impl ParticleSystem for Ode {
 
     fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) -> bool {
         let jacobian = match &self.jacobian {
-            Jacobian::Unknown => return false,
-            Jacobian::Sparse(_) => {
+            JacobianFunction::Unknown => return false,
+            JacobianFunction::Sparse(_) => {
                 let mut entries = vec![];
                 self.jacobian_entries(t, y, &mut entries);
                 out.fill(0.0);
@@ -335,14 +339,14 @@ impl ParticleSystem for Ode {
                 }
                 return true;
             }
-            Jacobian::Full(jacobian) => jacobian,
+            JacobianFunction::Full(jacobian) => jacobian,
         };
         self.failure.guard(out, |out| {
             jacobian(t, y, out)?;
             let wrong = out.iter().position(|number| !number.is_finite());
             match wrong.filter(|_| self.is_defined(t, y)) {
                 Some(k) => Err(format!(
-                    "the Jacobian is {} in row {} and column {} at t = {t} s, where f is finite",
+                    "the JacobianFunction is {} in row {} and column {} at t = {t} s, where f is finite",
                     out[k],
                     k / self.dim,
                     k % self.dim
@@ -354,7 +358,7 @@ impl ParticleSystem for Ode {
     }
 
     fn jacobian_entries(&self, t: f64, y: &[f64], entries: &mut Vec<(u32, u32, f64)>) -> bool {
-        let Jacobian::Sparse(write) = &self.jacobian else {
+        let JacobianFunction::Sparse(write) = &self.jacobian else {
             return false;
         };
         let mut failed = [0.0];
@@ -362,12 +366,12 @@ impl ParticleSystem for Ode {
             write(t, y, entries)?;
             let mut places = entries.iter().map(|(i, j, _)| (*i, *j));
             if let Some(wrong) = places.find(|place| is_outside(self.dim, *place)) {
-                return Err(outside("the Jacobian", self.dim, wrong));
+                return Err(outside("the JacobianFunction", self.dim, wrong));
             }
             let wrong = entries.iter().find(|(.., value)| !value.is_finite());
             match wrong.filter(|_| self.is_defined(t, y)) {
                 Some((i, j, value)) => Err(format!(
-                    "the Jacobian is {value} in row {i} and column {j} at t = {t} s, where f is finite"
+                    "the JacobianFunction is {value} in row {i} and column {j} at t = {t} s, where f is finite"
                 )),
                 None => Ok(()),
             }

@@ -8,7 +8,7 @@ use crate::scene::Model;
 use crate::system::{Mechanics, Splitting};
 
 /// Function of t, x and v that writes forces.
-type Forces = dyn Fn(f64, &[f64], &[f64], &mut [f64]) -> Result<(), String> + Send + Sync;
+type ForceFunction = dyn Fn(f64, &[f64], &[f64], &mut [f64]) -> Result<(), String> + Send + Sync;
 /// Function of t, x and v that writes dF/dx and dF/dv.
 type Tangents =
     dyn Fn(f64, &[f64], &[f64], &mut [f64], &mut [f64]) -> Result<(), String> + Send + Sync;
@@ -42,10 +42,10 @@ pub struct SecondOrder {
     inverse_masses: Vec<f64>,
     /// Number of coordinates that the functions see: one or three of each particle.
     seen: usize,
-    forces: Box<Forces>,
+    forces: Box<ForceFunction>,
     tangents: Option<Box<Tangents>>,
     /// Writes a single number.
-    energy: Option<Box<Forces>>,
+    energy: Option<Box<ForceFunction>>,
     reads_velocity: bool,
     failure: Failure,
 }

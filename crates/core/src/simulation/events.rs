@@ -38,7 +38,7 @@ pub(super) struct Event {
 
 /// Particle that comes close to an obstacle or an outflow.
 #[derive(Clone, Copy, Debug)]
-struct Pair {
+struct Encounter {
     particle: usize,
     /// Number of the obstacle, or of the outflow after all obstacles.
     body: usize,
@@ -58,7 +58,7 @@ struct Stretching {
 /// Search for events, with its scratch.
 #[derive(Default)]
 pub(super) struct Events {
-    pairs: Vec<Pair>,
+    pairs: Vec<Encounter>,
     /// Particles that lie on faces, where, and the normals there.
     faces: Vec<(usize, Vector3<f64>, Vector3<f64>)>,
     springs: Vec<Stretching>,
@@ -255,7 +255,7 @@ impl Events {
             // States that are not finite are reported elsewhere.
             if is_near {
                 let seen = begun.inwards(course.x[0] - begun.place.position);
-                self.pairs.push(Pair {
+                self.pairs.push(Encounter {
                     particle,
                     body,
                     touches: obstacle.shape.separation(seen).distance <= step.depths.none,

@@ -37,7 +37,7 @@ pub(super) struct Rest {
     particle: usize,
     obstacle: usize,
     /// The face on which it lies, if the obstacle has faces.
-    face: Option<Face>,
+    face: Option<ObstacleFace>,
     /// `None` if the particle sticks.
     slide: Option<Slide>,
 }
@@ -52,14 +52,14 @@ impl Rest {
 
 /// Face of an obstacle, in the obstacle's own frame.
 #[derive(Clone, Copy, Debug)]
-struct Face {
+struct ObstacleFace {
     /// Point of it (m).
     point: Vector3<f64>,
     normal: Vector3<f64>,
 }
 
 /// Obstacle at one time, as a particle that touches it sees it.
-struct Seen {
+struct SeenObstacle {
     /// Height (m) of the particle above the surface, or above the plane of its face.
     height: f64,
     normal: Vector3<f64>,
@@ -74,13 +74,17 @@ struct Seen {
     curving: f64,
 }
 
-impl Seen {
+impl SeenObstacle {
     /// Returns an obstacle at time t (s), as a particle at x (m) with the velocity v (m/s) sees it.
-    fn new((obstacle, face): (&Obstacle, Option<Face>), t: f64, [x, v]: [Vector3<f64>; 2]) -> Self {
+    fn new(
+        (obstacle, face): (&Obstacle, Option<ObstacleFace>),
+        t: f64,
+        [x, v]: [Vector3<f64>; 2],
+    ) -> Self {
         let pose = obstacle.at(t);
         let inner = pose.inwards(x - pose.place.position);
         let place = pose.of(inner);
-        let (height, normal) = if let Some(Face { point, normal }) = face {
+        let (height, normal) = if let Some(ObstacleFace { point, normal }) = face {
             ((inner - point).dot(&normal), normal)
         } else {
             let seen = obstacle.shape.separation(inner);
@@ -208,8 +212,10 @@ impl Rests {
                 let inner = pose.inwards(row(y, n, particle) - pose.place.position);
                 let seen = obstacle.shape.separation(inner);
                 if seen.distance.abs() <= depths.none {
-                    let face =
-                        Face { point: inner - seen.normal * seen.distance, normal: seen.normal };
+                    let face = ObstacleFace {
+                        point: inner - seen.normal * seen.distance,
+                        normal: seen.normal,
+                    };
                     self.now.push(Rest {
                         particle,
                         obstacle: k,
@@ -352,11 +358,11 @@ pub(super) fn first_negative(before: f64, mut margin: impl FnMut(f64) -> f64) ->
 
 impl Rest {
     /// Returns the obstacle in the state y at time t (s), as the particle sees it.
-    fn seen(&self, network: &Network, t: f64, y: &[f64]) -> Seen {
+    fn seen(&self, network: &Network, t: f64, y: &[f64]) -> SeenObstacle {
         let (n, i) = (network.particles(), self.particle);
         let [x, v] = [y, &y[3 * n..]].map(|half| row(half, n, i));
         let obstacle = &network.solids()[self.obstacle];
-        Seen::new((obstacle, self.face), t, [x, v])
+        SeenObstacle::new((obstacle, self.face), t, [x, v])
     }
 
     /// Returns the margin by which the contact continues unchanged in the state y at time t (s)

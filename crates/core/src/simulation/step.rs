@@ -55,7 +55,7 @@ const MAX_PARTS_AT_REBOUNDS: usize = 8;
 
 /// Plan of a step.
 #[derive(Clone, Copy)]
-struct Plan {
+struct StepPlan {
     /// Time of its beginning (s).
     t: f64,
     reach: Reach,
@@ -191,7 +191,7 @@ impl Pipeline {
         let reach = network.map_or(reach, |network| reach.before_jump(network, t, none));
         self.locator.list_rests(model, state, stepper, t, depths);
         let mut plan =
-            Plan { t, reach, depths, locates: locates && splits, divides: divides && !locates };
+            StepPlan { t, reach, depths, locates: locates && splits, divides: divides && !locates };
         loop {
             match self.attempt(model, state, plan) {
                 Ok(taken) => return Ok(Ok(taken)),
@@ -227,9 +227,9 @@ impl Pipeline {
         &mut self,
         model: &Model,
         state: &mut RunState,
-        plan: Plan,
+        plan: StepPlan,
     ) -> Result<(Part, Settled), Setback> {
-        let Plan { t, depths, .. } = plan;
+        let StepPlan { t, depths, .. } = plan;
         self.phases.begin(model, &state.y, plan.locates);
         let mut part = self.integrate(model, state, plan)?;
         if plan.locates {
@@ -288,7 +288,7 @@ impl Pipeline {
         &mut self,
         model: &Model,
         state: &mut RunState,
-        Plan { t, reach, .. }: Plan,
+        StepPlan { t, reach, .. }: StepPlan,
     ) -> Result<Part, Setback> {
         let resting = self.locator.view(model);
         let system = resting.as_ref().map_or(model.system(), |view| view);
@@ -321,7 +321,7 @@ impl Pipeline {
         &mut self,
         model: &Model,
         state: &mut RunState,
-        Plan { t, depths, .. }: Plan,
+        StepPlan { t, depths, .. }: StepPlan,
         whole: Part,
     ) -> Result<Part, Setback> {
         let (stepper, y0, h) = (&mut self.stepper, self.phases.y0(), whole.h);

@@ -222,9 +222,9 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
             let allowed = |run: &Simulation| before + cost(run) <= MAX_WORK && go_on();
             let settled = settle(&mut run, (pace * step, steps, leaves), &allowed)?;
             match settled {
-                Settled::Yes => break,
-                Settled::Failed if pace > least => {}
-                Settled::Failed | Settled::Stopped => return Ok(None),
+                RoundEnd::Yes => break,
+                RoundEnd::Failed if pace > least => {}
+                RoundEnd::Failed | RoundEnd::Stopped => return Ok(None),
             }
             // Implicit Euler turns a body by its spin at the start of a step.
             pace *= SHORTER_RATIO;
@@ -250,7 +250,7 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
 }
 
 /// Ways in which a round of steps towards rest ends.
-enum Settled {
+enum RoundEnd {
     Yes,
     /// A step failed.
     Failed,
@@ -263,16 +263,16 @@ fn settle(
     run: &mut Simulation,
     (step, steps, leaves): (f64, u32, bool),
     allowed: &dyn Fn(&Simulation) -> bool,
-) -> Result<Settled, Error> {
+) -> Result<RoundEnd, Error> {
     run.set_control(Control::Step(step))?;
     for _ in 0..steps {
         let before = run.state().to_vec();
         let held = safeguard_actions(run);
         if !allowed(run) {
-            return Ok(Settled::Stopped);
+            return Ok(RoundEnd::Stopped);
         }
         if !succeeded(run.take_steps(1))? {
-            return Ok(Settled::Failed);
+            return Ok(RoundEnd::Failed);
         }
         // If the collision safeguard carries the weight, and not the force of contact, there is
         // no equilibrium: steps become shorter.
@@ -294,7 +294,7 @@ fn settle(
             break;
         }
     }
-    Ok(Settled::Yes)
+    Ok(RoundEnd::Yes)
 }
 
 /// Returns the number of times that the collision safeguard has acted in a run.

@@ -38,7 +38,7 @@ pub(super) fn steps(h: f64, expected: f64) -> u64 {
 }
 
 /// Reason why a search ends before it has found the limit.
-enum Stop {
+enum SearchEnd {
     /// A run showed neither that its step holds nor that it fails.
     Open,
     Failed(Error),
@@ -57,9 +57,9 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
         Self { holds, runs: 0, tried: vec![] }
     }
 
-    fn hold(&mut self, h: f64) -> Result<bool, Stop> {
+    fn hold(&mut self, h: f64) -> Result<bool, SearchEnd> {
         self.runs += 1;
-        let holds = (self.holds)(h).map_err(Stop::Failed)?.ok_or(Stop::Open)?;
+        let holds = (self.holds)(h).map_err(SearchEnd::Failed)?.ok_or(SearchEnd::Open)?;
         self.tried.push((h, holds));
         Ok(holds)
     }
@@ -72,7 +72,7 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
         [shortest, longest]: [f64; 2],
         precision: f64,
         near: bool,
-    ) -> Result<(), Stop> {
+    ) -> Result<(), SearchEnd> {
         let (mut low, mut high);
         if self.hold(guess)? {
             (low, high) = (guess, (guess * 1.05).min(longest));
@@ -113,7 +113,7 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
     /// Tries steps around a limit (s) that may not be sharp: from half of it to twice it, and
     /// shorter ones as long as these fail. Then bisects both ends of the interval in which some
     /// hold and some fail.
-    fn spread(&mut self, limit: f64, precision: f64) -> Result<(), Stop> {
+    fn spread(&mut self, limit: f64, precision: f64) -> Result<(), SearchEnd> {
         for quarters in (-4..=4).filter(|quarters| *quarters != 0) {
             self.hold(limit * 2f64.powf(0.25 * f64::from(quarters)))?;
         }
@@ -133,7 +133,7 @@ impl<F: Fn(f64) -> Result<Option<bool>, Error>> Trials<F> {
 
     /// Tries shorter and shorter steps below a limit (s), until the last is half of the shortest
     /// that failed, or as short as `shortest` (s). Returns whether all held.
-    fn descend(&mut self, limit: f64, shortest: f64, ratio: f64) -> Result<bool, Stop> {
+    fn descend(&mut self, limit: f64, shortest: f64, ratio: f64) -> Result<bool, SearchEnd> {
         let (mut h, mut failed) = (limit, limit);
         while h > shortest && h > failed / CLEAR_RATIO {
             h /= ratio;
@@ -202,8 +202,8 @@ pub(super) fn bisect(
     }
     let mut trials = Trials::new(holds);
     match trials.search(guess, [shortest, longest], precision, near) {
-        Err(Stop::Failed(error)) => Err(error),
-        Ok(()) | Err(Stop::Open) => Ok(trials.observation()),
+        Err(SearchEnd::Failed(error)) => Err(error),
+        Ok(()) | Err(SearchEnd::Open) => Ok(trials.observation()),
     }
 }
 
@@ -233,8 +233,8 @@ pub(super) fn sharpen(
         Ok(false)
     };
     let agree = match agree() {
-        Err(Stop::Failed(error)) => return Err(error),
-        Err(Stop::Open) => false,
+        Err(SearchEnd::Failed(error)) => return Err(error),
+        Err(SearchEnd::Open) => false,
         Ok(agree) => agree,
     };
     let runs = seen.runs + long.runs + short.runs;

@@ -36,7 +36,7 @@ pub fn read(text: &str, particles: usize) -> Result<States, String> {
                 columns.len()
             )));
         }
-        let row = Row { columns: &columns, cells: &cells };
+        let row = CsvRow { columns: &columns, cells: &cells };
         let time = row.number(Column::Time).map_err(wrong)?;
         raw.digits[0].add(row.cell(Column::Time).unwrap_or_default());
         let is_new = raw.times.last().is_none_or(|last| *last != time);
@@ -106,12 +106,12 @@ fn counted(count: usize, thing: &str) -> String {
 }
 
 /// A row with the columns of its cells.
-struct Row<'a> {
+struct CsvRow<'a> {
     columns: &'a [Column],
     cells: &'a [&'a str],
 }
 
-impl Row<'_> {
+impl CsvRow<'_> {
     fn cell(&self, column: Column) -> Option<&str> {
         let at = self.columns.iter().position(|c| *c == column)?;
         self.cells.get(at).copied()
@@ -203,7 +203,7 @@ impl Layout {
     }
 
     /// Returns the particle of a row, which is marked as seen.
-    fn particle(&mut self, row: &Row, raw: &States, seen: &mut [bool]) -> Result<usize, String> {
+    fn particle(&mut self, row: &CsvRow, raw: &States, seen: &mut [bool]) -> Result<usize, String> {
         let there = seen.iter().filter(|seen| **seen).count();
         let mut number = there;
         if self.numbered {

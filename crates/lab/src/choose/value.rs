@@ -126,13 +126,13 @@ pub fn choose(
             method.name
         )));
     }
-    let search = Search::new(scene, options, monitor)?;
+    let search = ChoiceSearch::new(scene, options, monitor)?;
     let stopped = || Failure::Interrupted("interrupted: nothing was chosen".into());
     Failure::unless_stopped(search.choose(&methods))?.ok_or_else(stopped)
 }
 
 /// Search for a choice: options that are checked against the scene.
-struct Search<'a> {
+struct ChoiceSearch<'a> {
     scene: &'a Scene,
     options: &'a ChooseOptions,
     monitor: &'a dyn Monitor,
@@ -140,7 +140,7 @@ struct Search<'a> {
     scope: Scope,
 }
 
-impl<'a> Search<'a> {
+impl<'a> ChoiceSearch<'a> {
     fn new(
         scene: &'a Scene,
         options: &'a ChooseOptions,

@@ -36,7 +36,7 @@ const MAX_WORK: u64 = 200_000;
 const LEAST_SHARE: f64 = 0.95;
 
 /// Grid of the chart.
-struct Grid {
+struct ChartGrid {
     name: String,
     scene: Scene,
     places: Option<Vec<Vec<(usize, f64)>>>,
@@ -61,7 +61,7 @@ pub fn chart(
     let [.., own, finest] = &grids[..] else {
         return Ok(None);
     };
-    let difference = |grid: &Grid| models.compared.distance(&own.motion, &grid.motion);
+    let difference = |grid: &ChartGrid| models.compared.distance(&own.motion, &grid.motion);
     let half =
         grids.iter().find(|grid| 2 * grid.scene.model.particles() < own.scene.model.particles());
     let estimate = GridError::new(String::new(), half.map(difference), difference(finest));
@@ -160,10 +160,10 @@ fn balanced(runs: &[Measurement], error: f64) -> Option<[f64; 2]> {
 }
 
 /// Returns the grids from the coarsest to one twice as fine, with their accurate motions.
-fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
+fn grids(models: &Models) -> Result<Option<Vec<ChartGrid>>, Failure> {
     let own = &*models.request.source.description;
     let particles = models.scene.model.particles();
-    let mut all: Vec<Grid> = vec![];
+    let mut all: Vec<ChartGrid> = vec![];
     for factor in FACTORS.into_iter().chain([1.0]) {
         let regridded = regridded(own, factor, particles).ok().filter(|_| factor != 1.0);
         let (description, places) = match regridded {
@@ -176,7 +176,7 @@ fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
         };
         let name = format!("grid of {}", grid(&description));
         if all.iter().all(|grid| grid.name != name) {
-            all.push(Grid { name, scene: models.build(&description)?, places, motion });
+            all.push(ChartGrid { name, scene: models.build(&description)?, places, motion });
         }
     }
     all.sort_by_key(|grid| grid.scene.model.particles());
@@ -188,7 +188,7 @@ fn grids(models: &Models) -> Result<Option<Vec<Grid>>, Failure> {
 /// the grid makes nearly all of the error. `least` is the error of its accurate run.
 fn measured(
     models: &Models,
-    grid: &Grid,
+    grid: &ChartGrid,
     method: &'static Method,
     (truth, least): (&Track, f64),
 ) -> Result<Vec<Measurement>, Failure> {

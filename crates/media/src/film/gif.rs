@@ -152,7 +152,7 @@ pub struct Palette {
 
 /// The colours of a picture in one cell of the cube.
 #[derive(Clone, Copy)]
-struct Cell {
+struct ColourCell {
     /// The number of the cell.
     number: usize,
     /// The number of pixels.
@@ -163,7 +163,7 @@ struct Cell {
 
 /// Cells that share a colour of the palette.
 struct ColorBox {
-    cells: Vec<Cell>,
+    cells: Vec<ColourCell>,
     /// The mean colour.
     mean: [f64; 3],
     /// The axis with the largest variance.
@@ -213,10 +213,11 @@ impl Palette {
 
 impl ColorBox {
     /// Creates the box of these cells.
-    fn of(cells: Vec<Cell>) -> Self {
+    fn of(cells: Vec<ColourCell>) -> Self {
         let count: f64 = cells.iter().map(|cell| cell.count).sum();
-        let sum =
-            |of: &dyn Fn(&Cell) -> f64| cells.iter().map(|cell| cell.count * of(cell)).sum::<f64>();
+        let sum = |of: &dyn Fn(&ColourCell) -> f64| {
+            cells.iter().map(|cell| cell.count * of(cell)).sum::<f64>()
+        };
         let mean = [0, 1, 2].map(|axis| sum(&|cell| cell.mean[axis]) / count);
         let squares = [0, 1, 2].map(|axis| sum(&|cell| (cell.mean[axis] - mean[axis]).powi(2)));
         let axis = (0..3).fold(0, |a, b| if squares[b] > squares[a] { b } else { a });
@@ -224,14 +225,14 @@ impl ColorBox {
     }
 
     /// Splits the cells into those below the mean on the axis of the box, and the others.
-    fn halves(self) -> (Vec<Cell>, Vec<Cell>) {
+    fn halves(self) -> (Vec<ColourCell>, Vec<ColourCell>) {
         let (axis, mean) = (self.axis, self.mean);
         self.cells.into_iter().partition(|cell| cell.mean[axis] < mean[axis])
     }
 }
 
 /// Returns the cells that contain these colours.
-fn cells(colors: impl Iterator<Item = [u8; 3]>) -> Vec<Cell> {
+fn cells(colors: impl Iterator<Item = [u8; 3]>) -> Vec<ColourCell> {
     let mut colors: Vec<_> = colors.map(|color| (cell_of(color), color)).collect();
     colors.sort_unstable();
     let groups = colors.chunk_by(|a, b| a.0 == b.0);
@@ -239,7 +240,7 @@ fn cells(colors: impl Iterator<Item = [u8; 3]>) -> Vec<Cell> {
         .map(|group| {
             let count = group.len() as f64;
             let sum = |axis: usize| group.iter().map(|(_, c)| f64::from(c[axis])).sum::<f64>();
-            Cell { number: group[0].0, count, mean: [0, 1, 2].map(|axis| sum(axis) / count) }
+            ColourCell { number: group[0].0, count, mean: [0, 1, 2].map(|axis| sum(axis) / count) }
         })
         .collect()
 }

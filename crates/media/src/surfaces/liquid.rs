@@ -45,7 +45,7 @@ pub struct Liquid {
 }
 
 /// Field on the nodes of a grid.
-struct Field {
+struct NodeField {
     counts: [usize; 3],
     /// Position of the first node, and the distance of nodes (m).
     origin: [f64; 3],
@@ -86,11 +86,11 @@ impl Liquid {
         if places.is_empty() {
             return Self::default();
         }
-        Field::around(places, spacing, values).surface()
+        NodeField::around(places, spacing, values).surface()
     }
 }
 
-impl Field {
+impl NodeField {
     fn around(places: &[[f64; 3]], spacing: f64, values: Option<&[f32]>) -> Self {
         let (mut low, mut high) = (places[0], places[0]);
         for place in places {

@@ -36,9 +36,9 @@ pub(super) fn step_scale(fluids: &[Fluid]) -> f64 {
 /// Lattices of a fluid.
 struct Lattices<'a> {
     /// Liquid at the start.
-    liquid: Option<Places>,
+    liquid: Option<ParticleLattice>,
     /// Space in the tank.
-    tank: Option<Places>,
+    tank: Option<ParticleLattice>,
     /// Liquid that flows in.
     column: Option<Column<'a>>,
     /// Space in which it flows out.
@@ -67,9 +67,9 @@ impl Fluid {
         refuse!(if !matches!(self.dimensions, 2 | 3) => "dimensions":
             "it must be 2 or 3, not {}", self.dimensions);
         let is_none = self.inflow.is_some() && self.size == [0.0; 3];
-        let liquid = (!is_none).then(|| Places::new(self, self.size, self.at));
+        let liquid = (!is_none).then(|| ParticleLattice::new(self, self.size, self.at));
         let tank = self.tank.as_ref().map(|tank| {
-            let space = Places::new(self, tank.size, tank.at);
+            let space = ParticleLattice::new(self, tank.size, tank.at);
             space.map_err(|fault| fault.within("tank"))
         });
         let column = self.inflow.as_ref().map(|inflow| {
@@ -142,7 +142,8 @@ pub fn fluid_points(fluid: &Fluid) -> Result<[Vec<Vector3<f64>>; 2], Fault> {
 impl Body for Fluid {
     fn add_to(&self, assembly: &mut Assembly, files: &mut Files) -> Result<(), Fault> {
         let lattices = self.lattices()?;
-        let count = |places: Option<&Places>, layers| places.map_or(0, |it| it.count(layers));
+        let count =
+            |places: Option<&ParticleLattice>, layers| places.map_or(0, |it| it.count(layers));
         let flows_in = count(lattices.column.as_ref().map(|it| &it.places), 0);
         let flowing = count(lattices.liquid.as_ref(), 0).saturating_add(flows_in);
         let tank = lattices.tank.as_ref();
@@ -245,7 +246,7 @@ pub(super) fn add(
 
 /// Column of particles behind the opening of an inflow of a fluid.
 struct Column<'a> {
-    places: Places,
+    places: ParticleLattice,
     fluid: &'a Fluid,
     inflow: &'a Inflow,
     /// Axis and speed (m/s) of the flow.
@@ -279,7 +280,7 @@ impl<'a> Column<'a> {
         // Three more layers close the opening behind the last ones.
         size[axis] = (layers + f64::from(LAYERS)) * fluid.spacing;
         let middle = Vector3::from(inflow.at) - velocity * (0.5 * size[axis] / speed);
-        let places = Places::new(fluid, size, middle.into())?;
+        let places = ParticleLattice::new(fluid, size, middle.into())?;
         Ok(Self { places, fluid, inflow, axis, speed, layers })
     }
 
@@ -373,7 +374,7 @@ pub(super) fn drain(network: &mut Network, state: &mut [f64]) {
 pub const LAYERS: u32 = 3;
 
 /// Lattice of the particles of a fluid, a tank or a column that flows in.
-struct Places {
+struct ParticleLattice {
     /// Number of lattice points along each axis.
     counts: [i64; 3],
     /// Corner of the lattice (m).
@@ -382,7 +383,7 @@ struct Places {
     flat: bool,
 }
 
-impl Places {
+impl ParticleLattice {
     /// Creates the lattice that fills a box.
     pub fn new(fluid: &Fluid, size: [f64; 3], center: [f64; 3]) -> Result<Self, Fault> {
         let flat = fluid.dimensions == 2;

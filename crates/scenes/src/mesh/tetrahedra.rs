@@ -215,7 +215,7 @@ fn is_tetrahedron(kind: u64) -> Result<bool, String> {
 }
 
 /// Reader of a file of Gmsh.
-struct Reader<'a> {
+struct GmshReader<'a> {
     lines: Box<dyn Iterator<Item = (usize, Vec<&'a str>)> + 'a>,
     /// Number of the line that was read last; 0 at the end of the file.
     line: usize,
@@ -227,7 +227,7 @@ const NO_FORMAT: &str = "it is no Gmsh file: one begins with $MeshFormat";
 /// Reads the mesh of a file of Gmsh.
 pub(super) fn gmsh(bytes: &[u8]) -> Result<Mesh, String> {
     let (lines, numbered) = (Box::new(lines(bytes)), Numbered::default());
-    let mut reader = Reader { lines, line: 0, numbered };
+    let mut reader = GmshReader { lines, line: 0, numbered };
     // Whether the version is 4.1 and not 2.2, once it is known.
     let mut is_new = None;
     while let Some((line, words)) = reader.lines.next() {
@@ -272,7 +272,7 @@ fn refused(format: &str) -> String {
     )
 }
 
-impl<'a> Reader<'a> {
+impl<'a> GmshReader<'a> {
     /// Reads the next line. `within` is the section that must not end before it.
     fn next(&mut self, within: &str) -> Result<Vec<&'a str>, String> {
         let line = self.lines.next();

@@ -18,13 +18,13 @@ use crate::text::line;
 #[derive(Clone)]
 pub(super) struct Value<'a> {
     pub text: &'a str,
-    node: Node<'a>,
+    node: ValueNode<'a>,
     span: Range<usize>,
 }
 
 /// Value in TOML, which is parsed as a whole, or in JSON, which is parsed level by level.
 #[derive(Clone)]
-enum Node<'a> {
+enum ValueNode<'a> {
     Toml(&'a DeValue<'a>),
     Json(&'a str),
 }
@@ -53,17 +53,17 @@ pub(super) struct Entry<'a> {
 impl<'a> Value<'a> {
     /// Creates the value of a whole text in TOML.
     pub fn of_toml(text: &'a str, whole: &'a DeValue<'a>) -> Self {
-        Self { text, node: Node::Toml(whole), span: 0..0 }
+        Self { text, node: ValueNode::Toml(whole), span: 0..0 }
     }
 
     /// Creates the value of a part of a text in JSON.
     pub fn of_json(text: &'a str, part: &'a str) -> Self {
         let start = part.as_ptr() as usize - text.as_ptr() as usize;
-        Self { text, node: Node::Json(part), span: start..start + part.len() }
+        Self { text, node: ValueNode::Json(part), span: start..start + part.len() }
     }
 
     fn spanned(text: &'a str, spanned: &'a Spanned<DeValue<'a>>) -> Self {
-        Self { text, node: Node::Toml(spanned.get_ref()), span: spanned.span() }
+        Self { text, node: ValueNode::Toml(spanned.get_ref()), span: spanned.span() }
     }
 
     /// Returns the byte at which it begins.
@@ -83,27 +83,27 @@ impl<'a> Value<'a> {
 
     pub fn is_table(&self) -> bool {
         match self.node {
-            Node::Toml(value) => matches!(value, DeValue::Table(_)),
-            Node::Json(part) => part.starts_with('{'),
+            ValueNode::Toml(value) => matches!(value, DeValue::Table(_)),
+            ValueNode::Json(part) => part.starts_with('{'),
         }
     }
 
     pub fn is_list(&self) -> bool {
         match self.node {
-            Node::Toml(value) => matches!(value, DeValue::Array(_)),
-            Node::Json(part) => part.starts_with('['),
+            ValueNode::Toml(value) => matches!(value, DeValue::Array(_)),
+            ValueNode::Json(part) => part.starts_with('['),
         }
     }
 
     pub fn is_null(&self) -> bool {
-        matches!(self.node, Node::Json("null"))
+        matches!(self.node, ValueNode::Json("null"))
     }
 
     /// Says how to turn a table into a list of tables; `None` in JSON, where no list of tables is
     /// wanted.
     pub fn in_list(&self) -> Option<String> {
         match (&self.node, self.source()) {
-            (Node::Json(_), _) => None,
+            (ValueNode::Json(_), _) => None,
             (_, header) if header.starts_with('[') => {
                 Some(format!("write its header as `[{header}]`"))
             }
@@ -117,8 +117,8 @@ impl<'a> Value<'a> {
     /// It is no JSON.
     pub fn found(&self) -> Result<Found<'a>, Fault> {
         match self.node {
-            Node::Toml(value) => Ok(self.found_in_toml(value)),
-            Node::Json(part) => self.found_in_json(part),
+            ValueNode::Toml(value) => Ok(self.found_in_toml(value)),
+            ValueNode::Json(part) => self.found_in_json(part),
         }
     }
 

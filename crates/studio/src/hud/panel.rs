@@ -99,7 +99,7 @@ fn knobs(ui: &Ui, room: Rect, session: &Session) -> f32 {
         if n == chosen {
             keep_in_sight(ui, "knobs", place, *k);
         }
-        let row = Row {
+        let row = KnobRow {
             number: *k,
             knob,
             dial,
@@ -173,7 +173,7 @@ const NAME_WIDTH: f32 = 76.0;
 const VALUE_WIDTH: f32 = 76.0;
 
 /// A row: a knob with its number in the table, and its dial.
-struct Row<'a> {
+struct KnobRow<'a> {
     number: usize,
     knob: &'a Knob,
     dial: &'a Dial,
@@ -185,7 +185,7 @@ struct Row<'a> {
     is_marked: bool,
 }
 
-impl Row<'_> {
+impl KnobRow<'_> {
     /// Draws the row.
     fn show(&self, ui: &Ui, rect: Rect) {
         let Self { number, dial, .. } = *self;

@@ -42,18 +42,18 @@ impl Progress {
 
 /// Monitor of a measurement, which may be on another thread.
 #[derive(Default)]
-struct Watch {
+struct MeasuringMonitor {
     stopped: AtomicBool,
     progress: Mutex<Progress>,
 }
 
-impl Watch {
+impl MeasuringMonitor {
     fn progress(&self) -> MutexGuard<'_, Progress> {
         self.progress.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Monitor for Watch {
+impl Monitor for MeasuringMonitor {
     fn go_on(&self) -> bool {
         !self.stopped.load(Ordering::Relaxed)
     }
@@ -84,7 +84,7 @@ impl Monitor for Watch {
 struct Job {
     question: Question,
     of: String,
-    watch: Arc<Watch>,
+    watch: Arc<MeasuringMonitor>,
     answer: Receiver<Result<Answer, Failure>>,
 }
 
@@ -157,7 +157,7 @@ impl Measuring {
         let Some(answerer) = self.answerer else {
             return Err("Only the program measures: key y copies the command line for it.".into());
         };
-        let (watch, (sender, answer)) = (Arc::new(Watch::default()), channel());
+        let (watch, (sender, answer)) = (Arc::new(MeasuringMonitor::default()), channel());
         let question = task.question;
         self.job = Some(Job { question, of, watch: watch.clone(), answer });
         let work = move || {

@@ -31,7 +31,7 @@ struct Vote {
 
 /// Votes for the same.
 #[derive(Clone, Copy, Default)]
-struct Sum {
+struct VoteSum {
     /// Sum of the displacements, and of their lengths (m).
     by: Vector3<f64>,
     lengths: f64,
@@ -46,7 +46,7 @@ pub(super) struct Votes {
     each: Vec<Option<Vote>>,
     /// The curve of each crossing, by its first crossing.
     curves: Vec<u32>,
-    sums: BTreeMap<(u32, Wrong), Sum>,
+    sums: BTreeMap<(u32, Wrong), VoteSum>,
     /// What is on the wrong side of each curve.
     decided: BTreeMap<u32, Wrong>,
     /// Mean displacement of each piece that moves (m).
@@ -57,7 +57,7 @@ impl Votes {
     pub fn count(skeleton: &Skeleton, pieces: &Pieces, hits: &[Hit]) -> Self {
         let curves = curves(skeleton, hits);
         let rims = rims(skeleton, pieces, hits, &curves);
-        let mut sums = BTreeMap::<_, Sum>::new();
+        let mut sums = BTreeMap::<_, VoteSum>::new();
         let vote = |(hit, curve): (&Hit, &u32)| -> Option<(Vote, f64)> {
             let [a, b] = skeleton.edges[hit.edge].map(|i| pieces.of[i as usize]);
             if a != b {
@@ -84,7 +84,7 @@ impl Votes {
             }
         }
         let decided = decided(&sums);
-        let mut of_pieces = BTreeMap::<_, Sum>::new();
+        let mut of_pieces = BTreeMap::<_, VoteSum>::new();
         for ((curve, wrong), sum) in &sums {
             if let (Wrong::Piece(piece), true) = (wrong, decided.get(curve) == Some(wrong)) {
                 let all = of_pieces.entry(*piece).or_default();
@@ -123,7 +123,7 @@ impl Votes {
 
 /// Decides what is on the wrong side of each curve: that which can leave in the straightest way, or
 /// else the smallest.
-fn decided(sums: &BTreeMap<(u32, Wrong), Sum>) -> BTreeMap<u32, Wrong> {
+fn decided(sums: &BTreeMap<(u32, Wrong), VoteSum>) -> BTreeMap<u32, Wrong> {
     let mut decided = BTreeMap::<u32, (Wrong, f64, f64)>::new();
     for ((curve, wrong), sum) in sums {
         let agreement = (CLASSES * sum.by.norm() / sum.lengths).round();

@@ -46,12 +46,12 @@ pub struct Fluid {
     law: FluidLaw,
     kernel: Kernel,
     members: Members,
-    scratch: Scratch<Buffers>,
+    scratch: Scratch<FluidBuffers>,
 }
 
 /// Neighbours of each particle of the fluid, and quantities of the particles.
 #[derive(Default)]
-struct Buffers {
+struct FluidBuffers {
     neighbours: Neighbours,
     x: Vec<Triple>,
     v: Vec<Triple>,
@@ -128,7 +128,7 @@ impl Fluid {
     pub fn pressures(&self, x: &[f64]) -> Vec<f64> {
         self.scratch.lend(|buffers| {
             self.weigh(x, buffers);
-            let Buffers { neighbours, x, densities, pushes, .. } = buffers;
+            let FluidBuffers { neighbours, x, densities, pushes, .. } = buffers;
             pushes.clear();
             pushes.extend(densities.iter().map(|density| self.law.push(*density)));
             let kernel = self.kernel;
@@ -185,8 +185,8 @@ impl Fluid {
     }
 
     /// Finds the neighbours and the densities at x (m), n x 3.
-    fn weigh(&self, x: &[f64], buffers: &mut Buffers) {
-        let Buffers { neighbours, x: places, densities, .. } = buffers;
+    fn weigh(&self, x: &[f64], buffers: &mut FluidBuffers) {
+        let FluidBuffers { neighbours, x: places, densities, .. } = buffers;
         self.place(x, places);
         let (kernel, mass, shared) = (self.kernel, self.law.mass(), self.is_shared());
         neighbours.cover(places, kernel.reach, shared);
@@ -216,7 +216,7 @@ impl Force for Fluid {
     fn add_forces(&self, at: &At, f: &mut [f64]) {
         self.scratch.lend(|buffers| {
             self.weigh(at.x, buffers);
-            let Buffers { neighbours, x, v, densities, pushes, out, .. } = buffers;
+            let FluidBuffers { neighbours, x, v, densities, pushes, out, .. } = buffers;
             self.place(at.v, v);
             pushes.clear();
             pushes.extend(densities.iter().map(|density| self.law.push(*density)));
@@ -246,7 +246,7 @@ impl Force for Fluid {
     fn add_differential(&self, at: &At, [dx, dv]: [&[f64]; 2], df: &mut [f64]) {
         self.scratch.lend(|buffers| {
             self.weigh(at.x, buffers);
-            let Buffers {
+            let FluidBuffers {
                 neighbours,
                 x,
                 v,

@@ -59,11 +59,11 @@ pub(crate) fn set(
     let own = columns_mut(f).map(|f| &mut f[sheet.particles()]);
     let bands = threads(grid.particles());
     fork(bands, 0..grid.rows(), grid.cols(), own, &|rows, f| {
-        Arch::new().dispatch(Forces { quantity, sheet, fields, rows, f, added, finish });
+        Arch::new().dispatch(StripForces { quantity, sheet, fields, rows, f, added, finish });
     });
 }
 
-struct Forces<'a> {
+struct StripForces<'a> {
     quantity: Quantity,
     sheet: &'a Sheet,
     fields: &'a [&'a [f64]],
@@ -75,7 +75,7 @@ struct Forces<'a> {
     finish: &'a Finish<'a>,
 }
 
-impl WithSimd for Forces<'_> {
+impl WithSimd for StripForces<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -91,7 +91,7 @@ impl WithSimd for Forces<'_> {
 }
 
 #[inline(always)]
-fn strips<S: Simd, const KIND: u8, const C: usize>(simd: S, forces: Forces) {
+fn strips<S: Simd, const KIND: u8, const C: usize>(simd: S, forces: StripForces) {
     const STRIDES: [usize; 3] = [stride(WIDTHS[0]), stride(WIDTHS[1]), stride(WIDTHS[2])];
     match forces.sheet.grid().cols() {
         // Scalar code depends less on the cache: one width is enough.
@@ -115,7 +115,10 @@ struct Kept<const C: usize, const P: usize> {
 
 /// Cuts the columns into strips of about the same width.
 #[inline(always)]
-fn strips_of<S: Simd, const KIND: u8, const C: usize, const P: usize>(simd: S, mut forces: Forces) {
+fn strips_of<S: Simd, const KIND: u8, const C: usize, const P: usize>(
+    simd: S,
+    mut forces: StripForces,
+) {
     let cols = forces.sheet.grid().cols();
     let most = P - 2 * PAD;
     let count = if cols <= most { 1 } else { cols.div_ceil(most - LEFT - RIGHT) };
@@ -138,11 +141,11 @@ fn strips_of<S: Simd, const KIND: u8, const C: usize, const P: usize>(simd: S, m
 #[inline(always)]
 fn run<S: Simd, const KIND: u8, const C: usize, const P: usize>(
     simd: S,
-    forces: &mut Forces,
+    forces: &mut StripForces,
     strip: &Range<usize>,
     kept: &mut Kept<C, P>,
 ) {
-    let Forces { sheet, fields, rows: wanted, f, added, finish, .. } = forces;
+    let StripForces { sheet, fields, rows: wanted, f, added, finish, .. } = forces;
     let (rows, cols) = (sheet.grid().rows(), sheet.grid().cols());
     // The columns whose springs are computed, and those of the particles at their ends.
     let first = strip.start.saturating_sub(LEFT);
@@ -250,9 +253,9 @@ mod tests {
                 let all = [numbers(), numbers(), numbers(), numbers()];
                 let fields = all.each_ref().map(|field| &field[..]);
                 for quantity in [Quantity::Forces, Quantity::Differential] {
-                    let by = |run: &dyn Fn(Forces)| {
+                    let by = |run: &dyn Fn(StripForces)| {
                         let mut f = vec![f64::NAN; fields[0].len()];
-                        run(Forces {
+                        run(StripForces {
                             quantity,
                             sheet: &sheet,
                             fields: &fields,
@@ -268,9 +271,9 @@ mod tests {
                     assert_eq!(by(&|forces| Arch::new().dispatch(forces)), expected);
                     for bands in [2, 3, 8] {
                         let found = by(&|forces| {
-                            let Forces { rows, f, .. } = forces;
+                            let StripForces { rows, f, .. } = forces;
                             fork(bands, rows, cols, f, &|rows, f| {
-                                Arch::new().dispatch(Forces { rows, f, ..forces });
+                                Arch::new().dispatch(StripForces { rows, f, ..forces });
                             });
                         });
                         assert!(found == expected, "{bands} bands");

@@ -91,7 +91,7 @@ fn advance<S: Simd, const KIND: u8>(simd: S, job: Advance) {
         spring_forces: scratch.kept.row_mut(number),
     };
     springs.find_along::<S, KIND>(simd, lanes, here);
-    let combine = Combine::<S> {
+    let combine = CombineRows::<S> {
         y: lanes.places_mut::<S>(y.row_mut(row)),
         sum: lanes.places_mut::<S>(sum.row_mut(row)),
         stage: lanes.places_mut::<S>(here),
@@ -104,7 +104,7 @@ fn advance<S: Simd, const KIND: u8>(simd: S, job: Advance) {
 }
 
 /// Use that takes particles to the next stage by their accelerations, k = \[v | a\].
-struct Combine<'a, S: Simd> {
+struct CombineRows<'a, S: Simd> {
     y: PlacesMut<'a, S>,
     sum: PlacesMut<'a, S>,
     stage: PlacesMut<'a, S>,
@@ -113,7 +113,7 @@ struct Combine<'a, S: Simd> {
     flow: Option<Flow>,
 }
 
-impl<S: Simd> Use<S> for Combine<'_, S> {
+impl<S: Simd> Use<S> for CombineRows<'_, S> {
     #[inline(always)]
     fn here(&self, i: usize) -> Point<S> {
         let (x, v) = &self.stage;

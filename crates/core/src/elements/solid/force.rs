@@ -43,11 +43,16 @@ impl Force for Solid {
     }
 
     fn add_forces(&self, at: &At, f: &mut [f64]) {
-        Arch::new().dispatch(Forces { solid: self, values: [at.x, at.v], changes: None, f });
+        Arch::new().dispatch(SolidForces { solid: self, values: [at.x, at.v], changes: None, f });
     }
 
     fn add_differential(&self, at: &At, d: [&[f64]; 2], df: &mut [f64]) {
-        Arch::new().dispatch(Forces { solid: self, values: [at.x, at.v], changes: Some(d), f: df });
+        Arch::new().dispatch(SolidForces {
+            solid: self,
+            values: [at.x, at.v],
+            changes: Some(d),
+            f: df,
+        });
     }
 
     fn couplings(&self, _t: f64, x: &[f64], clamped: bool, visit: &mut dyn FnMut(Coupling)) {
@@ -81,7 +86,7 @@ impl Force for Solid {
 }
 
 /// Task that adds the forces of a solid to f, or their differential.
-struct Forces<'a> {
+struct SolidForces<'a> {
     solid: &'a Solid,
     /// Positions (m) and velocities (m/s).
     values: [&'a [f64]; 2],
@@ -90,7 +95,7 @@ struct Forces<'a> {
     f: &'a mut [f64],
 }
 
-impl WithSimd for Forces<'_> {
+impl WithSimd for SolidForces<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -110,7 +115,7 @@ impl WithSimd for Forces<'_> {
             };
             let mut forces = none;
             for part in 0..LANES / S::F64_LANES {
-                let rest = Rest::new(simd, block, part);
+                let rest = RestShape::new(simd, block, part);
                 let (at, moving) = (corners(simd, &x, part), corners(simd, &v, part));
                 let own = if self.changes.is_none() {
                     rest.forces(material, &at, if damped { Some(&moving) } else { None })
@@ -169,12 +174,12 @@ fn changes<N: Number>(a: &[Dual<N>; 3]) -> [N; 3] {
 }
 
 /// Shape of tetrahedra at rest.
-struct Rest<N> {
+struct RestShape<N> {
     gradients: Matrix<N>,
     volume: N,
 }
 
-impl<S: Simd> Rest<Lanes<S>> {
+impl<S: Simd> RestShape<Lanes<S>> {
     #[inline(always)]
     fn new(simd: S, block: &Block, part: usize) -> Self {
         Self {
@@ -184,13 +189,13 @@ impl<S: Simd> Rest<Lanes<S>> {
     }
 }
 
-impl<N: Number> Rest<N> {
+impl<N: Number> RestShape<N> {
     /// Returns the same shape in dual numbers, whose differentials are 0.
     #[inline(always)]
-    fn dual(&self) -> Rest<Dual<N>> {
+    fn dual(&self) -> RestShape<Dual<N>> {
         let Self { gradients, volume } = self;
         let zero = volume.constant(0.0);
-        Rest {
+        RestShape {
             gradients: three!(i => pair(&gradients[i], &[zero; 3])),
             volume: Dual { value: *volume, change: zero },
         }

@@ -18,7 +18,7 @@ use crate::scratch::Scratch;
 const CORNERS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
 /// Stiffness (N/m) and damping (N s/m) of a pair of particles.
-type Sums = [[f64; 9]; 2];
+type PairSums = [[f64; 9]; 2];
 
 /// Pairs of particles that are in one tetrahedron.
 #[derive(Clone, Debug, Default)]
@@ -28,7 +28,7 @@ pub(super) struct Pairs {
     /// Index of the pair of each two corners of each tetrahedron.
     places: Vec<[u32; 6]>,
     /// Sums over tetrahedra.
-    sums: Scratch<Vec<Sums>>,
+    sums: Scratch<Vec<PairSums>>,
 }
 
 impl Pairs {
@@ -60,7 +60,7 @@ impl Pairs {
     ) {
         self.sums.lend(|all| {
             all.clear();
-            all.resize(self.ends.len(), Sums::default());
+            all.resize(self.ends.len(), PairSums::default());
             for (tetrahedron, places) in tetrahedra.zip(&self.places) {
                 let hessian = Hessian::new(material, &tetrahedron, clamped);
                 for ([k, l], place) in CORNERS.into_iter().zip(places) {
@@ -125,7 +125,7 @@ impl Hessian {
         material: &Material,
         tetrahedron: &Deformed,
         [k, l]: [usize; 2],
-        [stiffness, damping]: &mut Sums,
+        [stiffness, damping]: &mut PairSums,
     ) {
         let (a, b) = (self.framed[k], self.framed[l]);
         // The derivative of the force along axis i of the frame for a motion along axis j.

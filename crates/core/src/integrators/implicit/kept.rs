@@ -41,7 +41,7 @@ impl Tangent {
 }
 
 /// Reason why a solve with the kept tangent failed.
-enum Failure {
+enum SolveFailure {
     /// The tangent is not positive definite.
     Indefinite,
     /// The iterations do not converge.
@@ -134,7 +134,7 @@ impl KeptSolver {
                 let (cost, of_use) = self.form(system);
                 work += cost;
                 if !of_use {
-                    solved = Err(Failure::Indefinite);
+                    solved = Err(SolveFailure::Indefinite);
                 }
             }
             if solved.is_ok() {
@@ -147,8 +147,8 @@ impl KeptSolver {
                     self.project(system, y);
                     return (work, true);
                 }
-                Err(Failure::Indefinite) if !self.tangent.clamped => clamped = true,
-                Err(Failure::Diverges) if !fresh => (),
+                Err(SolveFailure::Indefinite) if !self.tangent.clamped => clamped = true,
+                Err(SolveFailure::Diverges) if !fresh => (),
                 Err(_) => {
                     self.tangent = Tangent::NONE;
                     return (work, false);
@@ -193,7 +193,7 @@ impl KeptSolver {
         base: &[f64],
         y: &mut [f64],
         norm: &ErrorNorm,
-    ) -> (Work, Result<(), Failure>) {
+    ) -> (Work, Result<(), SolveFailure>) {
         let mut work = Work::default();
         let mut last: Option<f64> = None;
         if let StageSolver::Mechanical(stage) = &mut self.stage
@@ -216,7 +216,7 @@ impl KeptSolver {
             };
             work += cost;
             if !solved {
-                return (work, Err(Failure::Indefinite));
+                return (work, Err(SolveFailure::Indefinite));
             }
             let size = norm.of(y, y, &self.change);
             if let Some(last) = last {
@@ -232,7 +232,7 @@ impl KeptSolver {
             }
             last = Some(size);
         }
-        (work, Err(Failure::Diverges))
+        (work, Err(SolveFailure::Diverges))
     }
 }
 

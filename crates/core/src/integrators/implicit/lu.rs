@@ -46,14 +46,14 @@ const SPARSE: [[f64; 2]; 2] = [[130.0, 14.0], [75.0, 4.0]];
 /// Factors of a matrix, with room for them.
 pub(super) struct Lu<T> {
     order: usize,
-    factors: Factors<T>,
+    factors: LuFactors<T>,
     /// Costs of the last factorisation, and of a solution with it, in real multiplications within
     /// rows.
     costs: [f64; 2],
 }
 
 /// Factors L and U of a matrix.
-enum Factors<T> {
+enum LuFactors<T> {
     /// In place of the matrix, row by row, and the row that each row was exchanged with, in turn.
     Full(Vec<T>, Vec<usize>),
     Sparse(Box<Sparse<T>>),
@@ -65,7 +65,7 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
         let room = if order > MAX_DENSE { 0 } else { order * order };
         Self {
             order,
-            factors: Factors::Full(vec![T::zero(); room], vec![0; order]),
+            factors: LuFactors::Full(vec![T::zero(); room], vec![0; order]),
             costs: [0.0; 2],
         }
     }
@@ -91,7 +91,7 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
         let (n, parts) = (self.order, parts::<T>());
         let products = match (jacobian, &mut self.factors) {
             (Matrix::Full(jacobian), _) if jacobian.len() < n * n => None,
-            (Matrix::Full(jacobian), Factors::Full(matrix, pivots)) => {
+            (Matrix::Full(jacobian), LuFactors::Full(matrix, pivots)) => {
                 matrix.resize(n * n, T::zero());
                 for (entry, slope) in matrix.iter_mut().zip(jacobian) {
                     *entry = T::zero() - T::from_real(scale * slope);
@@ -105,15 +105,15 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
                 }
                 eliminate(matrix, pivots)
             }
-            (Matrix::Sparse(pattern, values), Factors::Sparse(factors)) => {
+            (Matrix::Sparse(pattern, values), LuFactors::Sparse(factors)) => {
                 factors.factorise((shift, mass), scale, (pattern, values))
             }
             (Matrix::Full(_), factors) => {
-                *factors = Factors::Full(vec![], vec![0; n]);
+                *factors = LuFactors::Full(vec![], vec![0; n]);
                 return self.factorise((shift, mass), scale, jacobian);
             }
             (Matrix::Sparse(..), factors) => {
-                *factors = Factors::Sparse(Box::new(Sparse::new(n)));
+                *factors = LuFactors::Sparse(Box::new(Sparse::new(n)));
                 return self.factorise((shift, mass), scale, jacobian);
             }
         };
@@ -122,11 +122,11 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
         };
         let all = (n * n) as f64;
         self.costs = match &self.factors {
-            Factors::Full(..) => {
+            LuFactors::Full(..) => {
                 let costs = [SEARCH * all + parts * products as f64, SOLUTION * all];
                 costs.map(|cost| parts * cost)
             }
-            Factors::Sparse(factors) => {
+            LuFactors::Sparse(factors) => {
                 let of = |prices: [f64; 2], products: usize| {
                     prices[0] * n as f64 + prices[1] * products as f64
                 };
@@ -139,8 +139,8 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
     /// Replaces a right-hand side by its solution.
     pub fn solve(&mut self, b: &mut [T]) {
         match &mut self.factors {
-            Factors::Full(matrix, pivots) => substitute(matrix, pivots, b),
-            Factors::Sparse(factors) => factors.solve(b),
+            LuFactors::Full(matrix, pivots) => substitute(matrix, pivots, b),
+            LuFactors::Sparse(factors) => factors.solve(b),
         }
     }
 }

@@ -29,7 +29,7 @@ pub(super) struct Pattern {
 }
 
 /// Block of columns, with the rows that it may act on.
-struct Block {
+struct ColumnBlock {
     columns: Range<usize>,
     rows: Vec<u32>,
 }
@@ -45,7 +45,7 @@ impl Pattern {
     ) -> Option<Self> {
         let rows = (0..size as u32).collect();
         let columns = 0..size;
-        let mut blocks = vec![Block { columns, rows }];
+        let mut blocks = vec![ColumnBlock { columns, rows }];
         while blocks.iter().any(|block| block.columns.len() > 1) {
             let halves: Vec<_> = blocks.iter().flat_map(halves).collect();
             let groups = group(size, halves.iter().map(|(_, rows)| *rows));
@@ -77,7 +77,7 @@ impl Pattern {
                 }
             }
             let both = halves.into_iter().zip(found);
-            blocks = both.map(|((columns, _), rows)| Block { columns, rows }).collect();
+            blocks = both.map(|((columns, _), rows)| ColumnBlock { columns, rows }).collect();
         }
         let columns: Vec<_> = blocks.into_iter().map(|block| block.rows).collect();
         Self::of(&columns, most)
@@ -144,7 +144,7 @@ impl Pattern {
 }
 
 /// Returns the halves of a block, each with the rows of the block; a single column is one half.
-fn halves(block: &Block) -> impl Iterator<Item = (Range<usize>, &[u32])> {
+fn halves(block: &ColumnBlock) -> impl Iterator<Item = (Range<usize>, &[u32])> {
     let Range { start, end } = block.columns;
     let middle = start.midpoint(end);
     let halves = [start..middle, middle..end].into_iter();

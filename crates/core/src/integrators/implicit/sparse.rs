@@ -17,7 +17,7 @@ const DIAGONAL_SHARE: f64 = 0.1;
 const NONE: u32 = u32::MAX;
 
 /// Columns of a triangular factor, without its diagonal.
-struct Columns<T> {
+struct FactorColumns<T> {
     starts: Vec<usize>,
     entries: Vec<(u32, T)>,
 }
@@ -30,9 +30,9 @@ pub(super) struct Sparse<T> {
     ranks: Vec<u32>,
     pivots: Vec<u32>,
     /// L, whose entries have the numbers of their rows, and a diagonal of ones.
-    lower: Columns<T>,
+    lower: FactorColumns<T>,
     /// U, whose entries have the ranks of their rows.
-    upper: Columns<T>,
+    upper: FactorColumns<T>,
     /// Reciprocals of the diagonal of U.
     reciprocals: Vec<T>,
     /// Column that is eliminated, and whether each row of it is listed.
@@ -46,7 +46,7 @@ pub(super) struct Sparse<T> {
 impl<T: ComplexField<RealField = f64> + Copy> Sparse<T> {
     /// Creates room for the factors of a matrix of this order.
     pub fn new(order: usize) -> Self {
-        let columns = || Columns { starts: vec![], entries: vec![] };
+        let columns = || FactorColumns { starts: vec![], entries: vec![] };
         Self {
             order: vec![],
             ranks: vec![NONE; order],

@@ -222,14 +222,14 @@ impl Accessor {
 #[derive(Clone, Deserialize)]
 struct Sparse {
     count: usize,
-    indices: Part,
-    values: Part,
+    indices: ViewPart,
+    values: ViewPart,
 }
 
 /// Part of a view. Only indices have a component type here.
 #[derive(Clone, Deserialize)]
 #[serde(rename_all = "camelCase")]
-struct Part {
+struct ViewPart {
     buffer_view: usize,
     #[serde(default)]
     byte_offset: usize,
