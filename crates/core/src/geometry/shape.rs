@@ -87,7 +87,9 @@ impl Simplices {
             .collect();
         let mut around = vec![vec![]; self.points.len()];
         for (k, corners) in self.triangles.iter().enumerate() {
-            corners.iter().for_each(|i| around[*i as usize].push(k));
+            for i in corners {
+                around[*i as usize].push(k);
+            }
         }
         let is_coplanar = |k: usize, l: usize| {
             normals[k].cross(&normals[l]).norm() < COPLANAR_SINE
