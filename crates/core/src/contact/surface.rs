@@ -397,8 +397,9 @@ pub(super) struct Items {
 }
 
 impl Items {
-    /// Collects the vertices, edges and sides of these triangles, and those edges and points that
-    /// are in none of them, but for those inside flat faces. They rank after all items of `others`.
+    /// Collects the vertices and sides of these triangles, and the edges and points that are in no
+    /// triangle. Edges and points inside flat faces are left out. All rank after the items of
+    /// `others`.
     pub fn new(
         triangles: impl IntoIterator<Item = [u32; 3]>,
         edges: impl IntoIterator<Item = [u32; 2]>,
