@@ -129,7 +129,7 @@ impl Ode {
     pub fn with_sparsity(self, mut entries: Vec<(u32, u32)>) -> Result<Self, Error> {
         let dim = self.dim;
         if let Some(wrong) = entries.iter().find(|entry| is_outside(dim, **entry)) {
-            return Err(Error::Invalid(outside("the JacobianFunction", dim, *wrong)));
+            return Err(Error::Invalid(outside("the Jacobian", dim, *wrong)));
         }
         entries.sort_unstable_by_key(|(row, column)| (*column, *row));
         entries.dedup();
@@ -346,7 +346,7 @@ impl ParticleSystem for Ode {
             let wrong = out.iter().position(|number| !number.is_finite());
             match wrong.filter(|_| self.is_defined(t, y)) {
                 Some(k) => Err(format!(
-                    "the JacobianFunction is {} in row {} and column {} at t = {t} s, where f is finite",
+                    "the Jacobian is {} in row {} and column {} at t = {t} s, where f is finite",
                     out[k],
                     k / self.dim,
                     k % self.dim
@@ -366,12 +366,12 @@ impl ParticleSystem for Ode {
             write(t, y, entries)?;
             let mut places = entries.iter().map(|(i, j, _)| (*i, *j));
             if let Some(wrong) = places.find(|place| is_outside(self.dim, *place)) {
-                return Err(outside("the JacobianFunction", self.dim, wrong));
+                return Err(outside("the Jacobian", self.dim, wrong));
             }
             let wrong = entries.iter().find(|(.., value)| !value.is_finite());
             match wrong.filter(|_| self.is_defined(t, y)) {
                 Some((i, j, value)) => Err(format!(
-                    "the JacobianFunction is {value} in row {i} and column {j} at t = {t} s, where f is finite"
+                    "the Jacobian is {value} in row {i} and column {j} at t = {t} s, where f is finite"
                 )),
                 None => Ok(()),
             }
