@@ -5,29 +5,27 @@ pub(crate) use pulp::Arch;
 #[cfg(all(target_arch = "wasm32", target_feature = "relaxed-simd"))]
 pub(crate) use relaxed::Arch;
 
-/// A build for relaxed SIMD leaves out the code for SIMD without it, which a browser never runs
-/// there: a tenth of a page.
+/// A build for relaxed SIMD, which no browser without it loads, leaves out the code for less: a
+/// tenth of a page.
 #[cfg(all(target_arch = "wasm32", target_feature = "relaxed-simd"))]
 mod relaxed {
     use pulp::wasm::RelaxedSimd;
-    use pulp::{Scalar, Simd, WithSimd};
+    use pulp::{Simd, WithSimd};
 
-    /// The vectors that were found.
+    /// Vectors of relaxed SIMD.
     #[derive(Clone, Copy)]
-    pub(crate) struct Arch(Option<RelaxedSimd>);
+    pub(crate) struct Arch(RelaxedSimd);
 
     impl Arch {
         /// Finds the vectors.
         pub fn new() -> Self {
-            Self(RelaxedSimd::try_new())
+            let found = RelaxedSimd::try_new();
+            Self(found.unwrap_or_else(|| unreachable!("the module was loaded")))
         }
 
         /// Does the work of `op` with them.
         pub fn dispatch<Op: WithSimd>(self, op: Op) -> Op::Output {
-            match self.0 {
-                Some(simd) => Simd::vectorize(simd, op),
-                None => Simd::vectorize(Scalar::new(), op),
-            }
+            Simd::vectorize(self.0, op)
         }
     }
 }
