@@ -102,6 +102,19 @@ impl ContactPhase {
         impulses.add_forces(*h, f);
     }
 
+    /// Returns the sum of the magnitudes (N s) of the impulses that the particles which impulses met
+    /// in the last step have got, or of those by which forces f (N), n x 3, drive them, where these
+    /// are larger: an implicit method foresees how forces give way, so that a smaller impulse stops
+    /// what it lets move, though something holds all of the force.
+    pub(crate) fn reaction(&self, f: &[f64]) -> f64 {
+        let mut held = vec![0.0; f.len()];
+        self.add_forces(&mut held);
+        let n = f.len() / 3;
+        let met = (0..n).map(|i| [row(&held, n, i), row(f, n, i)].map(|force| force.norm()));
+        let met = met.filter(|[held, _]| *held > 0.0);
+        met.map(|[held, driven]| held.max(driven)).sum::<f64>() * self.impulses.1
+    }
+
     /// Forgets the impulses of the last step, because the state is no longer that at its end.
     pub(crate) fn forget_impulses(&mut self) {
         self.impulses.0.clear();

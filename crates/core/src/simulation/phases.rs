@@ -9,8 +9,8 @@ use super::depths::Depths;
 use crate::columns::row;
 use crate::constraints::{Constraint, Pushed};
 use crate::contact::{
-    Bodies, ContactPhase, Course, Impulses, Joints, Pinched, Statistics, Step, StrainLimiter,
-    Strained, bulge, earliest, guard, resolve,
+    Bodies, ContactPhase, Course, Impulses, Joints, Obstacle, Pinched, Statistics, Step,
+    StrainLimiter, Strained, bulge, earliest, guard, resolve,
 };
 use crate::error::Cause;
 use crate::interval::Interval;
@@ -174,6 +174,24 @@ impl Phases {
         }
         self.contact.add_forces(&mut f);
         f
+    }
+
+    /// Returns the sum of the magnitudes of the impulses (N s) by which moving obstacles may have
+    /// worked in a step that ends with y at time t (s), beyond those that were applied; 0 if all
+    /// stand still.
+    pub fn reaction(&self, network: &Network, t: f64, y: &[f64]) -> f64 {
+        if network.obstacles().iter().all(Obstacle::is_still) {
+            return 0.0;
+        }
+        let n = network.particles();
+        let mut rates = vec![0.0; y.len()];
+        network.eval_f(t, y, &mut rates);
+        let forces = &mut rates[3 * n..6 * n];
+        for (k, force) in forces.iter_mut().enumerate() {
+            *force *=
+                if network.inverse_masses()[k % n] > 0.0 { network.masses()[k % n] } else { 0.0 };
+        }
+        self.contact.reaction(forces)
     }
 
     /// Shortens springs that are too long.

@@ -373,7 +373,11 @@ impl Pipeline {
         let RunState { y, balance, .. } = state;
         let order = state.method.order;
         let end = End { order, t, y };
-        self.watch.end_step(model, balance, end, &settled.met, lost)
+        let mut met = settled.met;
+        let network = model.network().filter(|_| met.impulse.max(met.guarded.impulse) > 0.0);
+        let reaction = network.map_or(0.0, |network| self.phases.reaction(network, t, y));
+        met.impulse = met.impulse.max(reaction);
+        self.watch.end_step(model, balance, end, &met, lost)
     }
 }
 
