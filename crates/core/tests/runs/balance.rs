@@ -331,6 +331,36 @@ fn a_ball_on_a_box_that_jumps_gains_nothing() {
     }
 }
 
+/// A box sinks onto a jelly. Implicit methods foresee how it gives way, and what the box then has to
+/// stop is little; its work is no gain all the same. What a step that is too long adds is one.
+#[test]
+fn a_jelly_that_a_box_presses_gains_nothing() {
+    let text = "self_collision = true
+        gravity = [0, -9.81, 0]
+        floor = { height = 0, friction = 0.3 }
+        [[jelly]]
+        grid = [5, 5, 5]
+        size = [0.4, 0.4, 0.4]
+        mass = 0.002
+        stiffness = [40, 20, 10]
+        damping_ratio = 0.5
+        at = [0, 0.22, 0]
+        [[box]]
+        center = [0, 0.66, 0]
+        size = [1, 0.4, 1]
+        shift = { by = [0, -0.25, 0], end = 0.5 }";
+    let run = |name: &str, step: f64| {
+        let mut run = Simulation::new(described(text), method(name), Control::Step(step)).unwrap();
+        let end = run.advance_to(0.6);
+        (end.map_err(|why| why.to_string()), run.gained())
+    };
+    for (name, step) in [("i", 0.02), ("i", 0.005), ("b", 0.01), ("r", 0.001)] {
+        assert_eq!(run(name, step), (Ok(()), None), "{name}, {step} s");
+    }
+    let (end, _) = run("t", 0.002);
+    assert!(end.is_err_and(|why| why.contains("gained")));
+}
+
 /// What a method adds to rods that it stretches is told, and nothing else is.
 #[test]
 fn rods_put_in_no_work() {
