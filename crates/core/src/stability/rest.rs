@@ -29,6 +29,10 @@ const SETTLING: [(f64, u32, bool); 5] = [
     (5.0, 400, false),
 ];
 
+/// Largest displacements of the particles in such a round, over the radius of the scene, of which
+/// the first is taken that lets no surfaces cross.
+const PUSHES: [f64; 3] = [1e-4, 1e-6, 1e-8];
+
 /// Time (s) in which gravity moves a scene by its radius, from which on the rounds have these
 /// steps: smaller and faster scenes take proportionally shorter ones.
 const SLOW_SCENE_TIME: f64 = 0.1;
@@ -198,8 +202,7 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
     let least = MIN_PACE_SHARE * pace;
     // The work of a new run starts from zero.
     let mut before = 0.0;
-    let again = |run: &Simulation, state: Vec<f64>, before: &mut f64| {
-        *before += cost(run);
+    let again = |run: &Simulation, state: Vec<f64>| {
         let mut scene = scene.clone();
         scene.state = state;
         Simulation::new(scene, implicit, run.control())
@@ -208,14 +211,23 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
         if leaves {
             // A fold may be balanced on its edge. The push makes it fall to one side, and it needs
             // all the steps to come to rest there.
-            let mut pushed = run.state().to_vec();
-            let (n, size) = (run.particles(), 1e-4 * run.extent().1);
-            for (k, x) in pushed[..3 * n].iter_mut().enumerate() {
-                if !network.is_pinned(k % n) {
-                    *x += size * random.between(-1.0, 1.0);
+            let (begun, radius) = (run.state().to_vec(), run.extent().1);
+            let mut pushes = vec![0.0; begun.len()];
+            for (k, push) in pushes[..3 * run.particles()].iter_mut().enumerate() {
+                if !network.is_pinned(k % run.particles()) {
+                    *push = random.between(-1.0, 1.0);
                 }
             }
-            run = again(&run, pushed, &mut before)?;
+            let pushed = |share: f64| {
+                let moved = begun.iter().zip(&pushes);
+                moved.map(|(x, push)| x + share * radius * push).collect()
+            };
+            // Where things lie close to one another, a push may let them cross.
+            let found = PUSHES.into_iter().find_map(|share| again(&run, pushed(share)).ok());
+            if let Some(found) = found {
+                before += cost(&run);
+                run = found;
+            }
         }
         let begun = run.state().to_vec();
         loop {
@@ -228,7 +240,8 @@ pub fn rest(scene: &Scene, go_on: impl Fn() -> bool) -> Result<Option<RestState>
             }
             // Implicit Euler turns a body by its spin at the start of a step.
             pace *= SHORTER_RATIO;
-            run = again(&run, begun.clone(), &mut before)?;
+            before += cost(&run);
+            run = again(&run, begun.clone())?;
         }
     }
     let mut y = run.state().to_vec();

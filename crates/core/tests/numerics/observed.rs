@@ -131,6 +131,26 @@ fn rest_is_without_tears_and_not_of_what_moves() {
     assert!(rest(&build("100", moves), || true).unwrap().is_none());
 }
 
+/// Boxes that stand on the floor far from one another, within a tenth of a millimetre of it: no
+/// push on the way to rest lets them cross it.
+#[test]
+fn what_lies_close_comes_to_rest() {
+    let body = |x: f64| {
+        format!(
+            "[[body]]
+            parts = [{{ box = [0.4, 0.2, 0.4] }}]
+            mass = 1
+            at = [{x}, 0.10005, {x}]
+            thickness = 0.0001\n"
+        )
+    };
+    let text = "self_collision = true\ngravity = [0, -9.81, 0]\nfloor = 0\n";
+    let scene = described(&(text.to_owned() + &body(0.0) + &body(2.0)));
+    let rest = rest(&scene, || true).unwrap().expect("it comes to rest");
+    let network = rest.scene.model.network().unwrap();
+    network.check_apart(0.0, &rest.scene.state[..3 * network.particles()]).unwrap();
+}
+
 /// A small cloth whose motion is slower by a factor has a limit larger by that factor.
 #[test]
 fn limits_at_rest_do_not_depend_on_the_unit_of_time() {
