@@ -4,6 +4,7 @@
 //! such a step.
 
 use std::cell::Cell;
+use std::convert::Infallible;
 
 use super::depths::Depths;
 use crate::columns::row;
@@ -36,8 +37,6 @@ pub(super) struct Phases {
     /// Whether velocities may lag behind the displacement of the step: they do with fixed steps of
     /// order 1, and never with a tolerance.
     pub may_lag: bool,
-    /// States before contact.
-    scratch: [Vec<f64>; 2],
 }
 
 /// Result of the phases after a step.
@@ -57,7 +56,6 @@ impl Phases {
             contact: ContactPhase::new(dim),
             excess: 0.0,
             may_lag: true,
-            scratch: Default::default(),
         }
     }
 
@@ -149,19 +147,26 @@ impl Phases {
         if y0.len() != y.len() {
             return;
         }
-        let inverse_masses = network.inverse_masses();
-        if let Some(layer) = network.contact_layer() {
-            // If prescribed motions leave no room, the step itself has ended the run.
-            let none = &mut Impulses::default();
-            let joints = JointsOf::new(network, self.may_lag);
-            let _ = guard(layer, joints.bodies(false), Interval { t, h }, y0, y, none);
-        } else if !knows_obstacles {
-            resolve(network.solids(), inverse_masses, &Step { t, h, y0 }, y);
-        }
-        network.hold(t + h, y);
-        if network.is_constrained() && network.can_touch() {
+        let joints = JointsOf::new(network, self.may_lag);
+        let meet = |y: &mut [f64], are_struck: bool| {
+            if let Some(layer) = network.contact_layer() {
+                // If prescribed motions leave no room, the step itself has ended the run.
+                let none = &mut Impulses::default();
+                let _ = guard(layer, joints.bodies(are_struck), Interval { t, h }, y0, y, none);
+            } else if !knows_obstacles {
+                let step = Step { t, h, y0 };
+                resolve(network.solids(), network.inverse_masses(), &step, y);
+            }
+            network.hold(t + h, y);
+            Ok::<_, Infallible>(())
+        };
+        let Ok(()) = if network.is_constrained() && network.can_touch() {
+            network.hold(t + h, y);
             project(network, y, true);
-        }
+            in_turns(network, y, meet)
+        } else {
+            meet(y, false)
+        };
     }
 
     /// Returns the contact forces (N), n x 3, on the particles of a network at y at time t (s):
@@ -202,9 +207,8 @@ impl Phases {
         }
     }
 
-    /// Moves particles out of obstacles, or keeps surfaces from passing through one another. That
-    /// moves a particle or a body alone: where constraints are, those on which it then pulls are
-    /// moved after it, in turns, until contact moves hardly anything any more.
+    /// Moves particles out of obstacles, or keeps surfaces from passing through one another; where
+    /// constraints are, in turns.
     fn part(
         &mut self,
         network: &Network,
@@ -220,25 +224,10 @@ impl Phases {
         if !takes_turns {
             return self.meet((&joints, false), times, y1);
         }
-        let [mut unstruck, mut before] = std::mem::take(&mut self.scratch);
-        unstruck.clear();
-        unstruck.extend_from_slice(y1);
-        let met = self.meet((&joints, false), times, y1)?;
-        let first = largest_shift(network, [&unstruck, y1]);
-        let mut last = first;
-        for _ in 0..MAX_ROUNDS {
-            // A state that is not finite is reported later.
-            if last.is_nan() || last <= SETTLED_SHARE * first {
-                break;
-            }
-            project(network, y1, true);
-            before.clear();
-            before.extend_from_slice(y1);
-            self.meet((&joints, true), times, y1)?;
-            last = largest_shift(network, [&before, y1]);
-        }
+        let unstruck = y1.to_vec();
+        let meet = |y: &mut [f64], are_struck: bool| self.meet((&joints, are_struck), times, y);
+        let met = in_turns(network, y1, meet)?;
         joints.balance(times.t + times.h, met.impulse, &unstruck, y1);
-        self.scratch = [unstruck, before];
         Ok(met)
     }
 
@@ -268,6 +257,32 @@ impl Phases {
         }
         Ok(met)
     }
+}
+
+/// Lets `meet` move what touches at y, the end of a step. That moves a particle or a body alone:
+/// those on which it then pulls by constraints are moved after it, in turns, until contact moves
+/// hardly anything any more; of all but the first of these, `meet` knows that. Returns the result
+/// of the first.
+fn in_turns<T, E>(
+    network: &Network,
+    y: &mut [f64],
+    mut meet: impl FnMut(&mut [f64], bool) -> Result<T, E>,
+) -> Result<T, E> {
+    let mut before = y.to_vec();
+    let met = meet(y, false)?;
+    let first = largest_shift(network, [&before, y]);
+    let mut last = first;
+    for _ in 0..MAX_ROUNDS {
+        // A state that is not finite is reported later.
+        if last.is_nan() || last <= SETTLED_SHARE * first {
+            break;
+        }
+        project(network, y, true);
+        before.copy_from_slice(y);
+        meet(y, true)?;
+        last = largest_shift(network, [&before, y]);
+    }
+    Ok(met)
 }
 
 /// Returns the largest displacement (m) between two states of anything that constraints hold.
