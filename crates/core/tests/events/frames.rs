@@ -151,3 +151,38 @@ fn free_flight_goes_on_after_going_back() {
         assert!((x - 0.6).abs() < 1e-6, "{name}: {x}");
     }
 }
+
+/// A rigid chain falls across the corner of a post. Between steps, too, no edge gets into the post,
+/// and the rods keep their lengths.
+#[test]
+fn frames_show_rods_beside_what_they_touch() {
+    let toml = "
+        self_collision = true
+        gravity = [0, -9.81, 0]
+        [[box]]
+        center = [0, 0, 0]
+        size = [0.05, 0.4, 0.05]
+        rotation = [0, 0.3, 0]
+        [[chain]]
+        particles = 15
+        rigid = true
+        from = [-0.6, 0.23, 0.05]
+        to = [0.6, 0.23, -0.07]
+        mass = 0.01
+    ";
+    let length = f64::hypot(1.2, 0.12) / 14.0;
+    for (name, tolerance) in [("dopri5", 1e-3), ("rkf45", 1e-3), ("verner65", 1e-5)] {
+        let control = Control::Tolerance(tolerance);
+        let mut run = Simulation::new(described(toml), method(name), control).unwrap();
+        for k in 1..=60 {
+            run.advance_to(f64::from(k) / 60.0).unwrap();
+            let network = run.model().network().unwrap();
+            let apart = network.check_apart(run.time(), &run.state()[..3 * run.particles()]);
+            apart.unwrap_or_else(|why| panic!("{name}, frame {k}: {why}"));
+            for i in 1..15 {
+                let off = (run.position(i) - run.position(i - 1)).norm() / length - 1.0;
+                assert!(off.abs() < 1e-3, "{name}, frame {k}, rod {i}: {off:e}");
+            }
+        }
+    }
+}
