@@ -143,7 +143,7 @@ impl Balance {
     }
 
     /// Returns the energy that gains are compared with (J).
-    fn stake(&self) -> f64 {
+    pub(super) fn stake(&self) -> f64 {
         self.scale().max(self.least)
     }
 

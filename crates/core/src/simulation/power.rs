@@ -20,13 +20,17 @@ use crate::path::Path;
 use crate::spring::Spring;
 use crate::system::{Mechanics, ParticleSystem};
 
-/// Time (s) between two evaluations of the work of wind, or of the total work, in a scene of more
-/// than [`MAX_PARTICLES_PER_STEP`] particles.
+/// Longest time (s) between two evaluations of the work of wind, or of the total work, in a scene
+/// of more than [`MAX_PARTICLES_PER_STEP`] particles.
 const INTERVAL: f64 = 1.0 / 60.0;
 
 /// Largest number of particles for which that work is evaluated at each step: with more, it would
 /// take too long.
 const MAX_PARTICLES_PER_STEP: usize = 200;
+
+/// Change of the total power between two evaluations, times the time between them, over the energy
+/// that moves, up to which the next ones may be farther apart: a tenth of a gain that is told.
+const STEADY_SHARE: f64 = 0.01;
 
 /// Least half of the interval of the difference quotient for the total power (s).
 const LEAST_MOMENT: f64 = 1e-7;
@@ -58,8 +62,8 @@ pub(super) struct End<'a> {
 pub struct Evaluated {
     /// Time (s), positions (m) and forces (N) of wind.
     wind: Option<(f64, Vec<f64>, Vec<f64>)>,
-    /// Time (s) and power (W) of everything together.
-    all: Option<(f64, f64)>,
+    /// Time (s) and power (W) of everything together, and the time until the next evaluation (s).
+    all: Option<[f64; 3]>,
 }
 
 impl Evaluated {
@@ -73,7 +77,7 @@ impl Evaluated {
         let mut wind = self.wind.iter();
         let mut all = self.all.iter();
         if wind.all(|(t, x, f)| t.is_finite() && fits(x) && fits(f))
-            && all.all(|(t, power)| t.is_finite() && power.is_finite())
+            && all.all(|all| all.iter().all(|number| number.is_finite()))
         {
             return Ok(());
         }
@@ -112,7 +116,7 @@ impl Power {
     pub fn evaluated(&self) -> Option<Evaluated> {
         self.is_fresh.then(|| Evaluated {
             wind: (self.wind.as_ref()).map(|wind| (wind.t, wind.x.clone(), wind.f.clone())),
-            all: self.all.as_ref().map(|all| (all.t, all.power)),
+            all: self.all.as_ref().map(|all| [all.t, all.power, all.interval]),
         })
     }
 
@@ -126,7 +130,7 @@ impl Power {
             wind.f.copy_from_slice(f);
         }
         if let (Some(all), Some(last)) = (&mut self.all, last.all) {
-            (all.t, all.power) = last;
+            [all.t, all.power, all.interval] = last;
         }
     }
 
@@ -135,17 +139,24 @@ impl Power {
         self.is_fresh = false;
     }
 
-    /// Returns the work (J) since the last evaluation, up to this end of a step: at least once in
-    /// an interval, and whenever it is needed `now`.
-    pub fn work(&mut self, network: &Network, end: End, now: bool) -> f64 {
+    /// Returns the work (J) since the last evaluation, up to this end of a step: whenever it is
+    /// needed `now`, at least once in an interval and, where it changes the energy that moves (J),
+    /// more often.
+    pub fn work(&mut self, network: &Network, end: End, now: bool, moving: f64) -> f64 {
         let few = network.particles() <= MAX_PARTICLES_PER_STEP;
-        let is_due = |t: f64| now || few || end.t - t >= INTERVAL;
+        let is_due = |t: f64, interval: f64| now || few || end.t - t >= interval;
         let pins = self.pins.as_mut().map(|pins| pins.work(network, end));
-        let wind = self.wind.as_mut().filter(|wind| is_due(wind.t));
+        let known = |t: f64| !few && next_known_time(network, t) <= end.t;
+        let wind = self.wind.as_mut().filter(|wind| is_due(wind.t, INTERVAL) || known(wind.t));
         let wind = wind.map(|wind| wind.work(network, end));
-        let all = self.all.as_mut().filter(|all| is_due(all.t));
-        let all = all.map(|all| all.work(network, end));
-        [pins, wind, all].into_iter().flatten().sum()
+        let mut work = pins.into_iter().chain(wind).sum();
+        if let Some(all) = &mut self.all {
+            if is_due(all.t, all.interval) || known(all.t) {
+                work += all.work(network, end, moving);
+            }
+            all.seen = end.t;
+        }
+        work
     }
 
     /// Returns the work (J) that is not evaluated yet at this end of a step, without noting it.
@@ -156,7 +167,7 @@ impl Power {
         let wind = self.wind.as_ref().filter(|wind| wind.t < end.t);
         let wind = wind.map(|wind| wind.clone().work(network, end));
         let all = self.all.as_ref().filter(|all| all.t < end.t);
-        let all = all.map(|all| all.clone().work(network, end));
+        let all = all.map(|all| all.clone().work(network, end, 0.0));
         [wind, all].into_iter().flatten().sum()
     }
 }
@@ -253,25 +264,38 @@ impl PinWork {
     fn work(&mut self, network: &Network, end: End) -> f64 {
         let [mut middle, mut own] = std::mem::take(&mut self.scratch);
         self.copy_state(end.y, &mut own);
+        let jumps = may_jump(network, end.t);
+        if jumps {
+            self.place_pins(end.t.next_down(), &mut own);
+        }
         let power = self.power_at(network, &own);
         let h = end.t - self.t;
         let mut mean = 0.5 * (self.power + power);
         if end.order > LOW_ORDER {
             write_middle(&self.y, &own, h, &mut middle);
-            let n = self.particles.len();
-            for (k, (path, _)) in self.paths.iter().enumerate() {
-                let place = path.at(self.t + 0.5 * h);
-                for axis in 0..3 {
-                    middle[axis * n + k] = place.position[axis];
-                    middle[(3 + axis) * n + k] = place.velocity[axis];
-                }
-            }
+            self.place_pins(self.t + 0.5 * h, &mut middle);
             mean = (2.0 * mean + 4.0 * self.power_at(network, &middle)) / 6.0;
         }
         (self.t, self.power) = (end.t, power);
+        if jumps {
+            self.place_pins(end.t, &mut own);
+            self.power = self.power_at(network, &own);
+        }
         std::mem::swap(&mut self.y, &mut own);
         self.scratch = [middle, own];
         mean * h
+    }
+
+    /// Writes the places and velocities of the pins at time t (s) to a state of the particles.
+    fn place_pins(&self, t: f64, state: &mut [f64]) {
+        let n = self.particles.len();
+        for (k, (path, _)) in self.paths.iter().enumerate() {
+            let place = path.at(t);
+            for axis in 0..3 {
+                state[axis * n + k] = place.position[axis];
+                state[(3 + axis) * n + k] = place.velocity[axis];
+            }
+        }
     }
 
     /// Returns the power (W) of the pins in a state of the particles.
@@ -327,8 +351,12 @@ impl WindWork {
     fn work(&mut self, network: &Network, End { t, y, .. }: End) -> f64 {
         let (x, v) = network.halves(y);
         let (free, n) = (network.inverse_masses(), network.particles());
-        self.scratch.fill(0.0);
-        add_wind(network, t, x, v, &mut self.scratch);
+        let jumps = may_jump(network, t);
+        let blow = |t: f64, f: &mut [f64]| {
+            f.fill(0.0);
+            add_wind(network, t, x, v, f);
+        };
+        blow(if jumps { t.next_down() } else { t }, &mut self.scratch);
         let mut work = 0.0;
         for (k, (x1, x0)) in x.iter().zip(&self.x).enumerate() {
             if free[k % n] > 0.0 {
@@ -337,6 +365,9 @@ impl WindWork {
         }
         self.t = t;
         self.x.copy_from_slice(x);
+        if jumps {
+            blow(t, &mut self.scratch);
+        }
         std::mem::swap(&mut self.f, &mut self.scratch);
         work
     }
@@ -351,6 +382,10 @@ struct TotalWork {
     power: f64,
     y: Vec<f64>,
     f: Vec<f64>,
+    /// Time (s) from the last evaluation to the next one, with many particles.
+    interval: f64,
+    /// End of the last step (s).
+    seen: f64,
     /// States, and rates of change.
     scratch: [Vec<f64>; 3],
 }
@@ -362,6 +397,8 @@ impl TotalWork {
             power: 0.0,
             y: y.to_vec(),
             f: vec![],
+            interval: 0.0,
+            seen: t,
             scratch: [(); 3].map(|()| vec![0.0; y.len()]),
         };
         all.begin(network, (t, LEAST_MOMENT), y);
@@ -376,9 +413,8 @@ impl TotalWork {
         self.f.clone_from(&self.scratch[1]);
     }
 
-    fn work(&mut self, network: &Network, end: End) -> f64 {
+    fn work(&mut self, network: &Network, end: End, moving: f64) -> f64 {
         let h = end.t - self.t;
-        let few = network.particles() <= MAX_PARTICLES_PER_STEP;
         let before = self.power;
         let moment = (MOMENT_SHARE * h).max(LEAST_MOMENT);
         let side = beside_jump(network, end.t, moment);
@@ -386,9 +422,9 @@ impl TotalWork {
         // Now f is at the end, and the scratch has that at the beginning.
         std::mem::swap(&mut self.f, &mut self.scratch[1]);
         let mut mean = 0.5 * (before + after);
-        if !few {
-            // The motion between two evaluations is unknown: its work must not count as a gain of
-            // the method.
+        if self.t < self.seen {
+            // The motion in the steps between two evaluations is unknown: its work must not count
+            // as a gain of the method.
             mean = 0.5 * (before.max(0.0) + after.max(0.0));
         } else if end.order > LOW_ORDER {
             let mut middle = std::mem::take(&mut self.scratch[2]);
@@ -401,10 +437,13 @@ impl TotalWork {
             mean = (2.0 * mean + 4.0 * self.power_at(network, (t, moment), &middle)) / 6.0;
             self.scratch[2] = middle;
         }
+        let is_steady = (after - before).abs() * h <= STEADY_SHARE * moving;
+        self.interval = if is_steady { self.interval.max(2.0 * h).min(INTERVAL) } else { 0.5 * h };
         (self.t, self.power) = (end.t, after);
         self.y.copy_from_slice(end.y);
         if side > 0.0 {
             self.begin(network, (end.t, moment), end.y);
+            self.interval = 0.0;
         }
         mean * h
     }
@@ -422,6 +461,11 @@ impl TotalWork {
         };
         (at(moment) - at(-moment)) / (2.0 * moment) - constraint_power(network)
     }
+}
+
+/// Returns whether a prescribed velocity, or wind, may jump at time t (s).
+fn may_jump(network: &Network, t: f64) -> bool {
+    next_known_time(network, t.next_down()) <= t
 }
 
 /// Returns the time (s) by which the power is evaluated before or after a time t (s) at which a

@@ -188,7 +188,7 @@ impl Watch {
         // The points of bodies are at their places only now.
         let mut y = end.y.to_vec();
         network.hold(end.t, &mut y);
-        let work = self.power.clone().work(network, End { y: &y, ..end }, true);
+        let work = self.power.clone().work(network, End { y: &y, ..end }, true, 0.0);
         let mut checked = *balance;
         checked.add(work);
         // The safeguard takes back how far surfaces have got into one another.
@@ -222,7 +222,7 @@ impl Watch {
         // Between velocities before and after an impact, constraints would not be met.
         let is_smooth = impulse == 0.0 || !network.is_constrained();
         let order = if is_smooth { end.order } else { 1 };
-        let mut work = self.power.work(network, End { order, ..end }, is_due);
+        let mut work = self.power.work(network, End { order, ..end }, is_due, balance.stake());
         if impulse > 0.0 {
             // Upper bound of the work of obstacles.
             let n = network.particles();
