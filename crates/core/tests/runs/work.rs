@@ -156,6 +156,54 @@ fn a_shaker_is_not_accused() {
     assert!(end.is_err() || run.gained().is_some());
 }
 
+/// What drives a scene is not accused because there are many particles: a motor, or a pin that jerks,
+/// beside a basin, and water that begins to flow in. A step that is too long still is.
+#[test]
+fn many_particles_hide_no_work() {
+    let basin = "[[fluid]]\ndimensions = 2\nsize = [1, 0.5, 0]\nspacing = 0.05\nat = [0.5, 0.25, 0]\n\
+        density = 1000\nsound = 40\ntank = { size = [1, 1, 0], at = [0.5, 0.5, 0] }\n";
+    let motor = "[[body]]\nparts = [{ box = [0.1, 0.5, 1] }]\ndensity = 1000\nat = [0.5, 2, 0]\n\
+        [[joint]]\nbody = 0\nhinge = { at = [0.5, 2, 0], axis = [0, 0, 1], torque = 10000, speed = 6 }\n";
+    let pin = "[particles]\npositions = [[0, 3, 0], [0, 3.5, 0]]\nmass = 1\n\
+        springs = [[0, 1, 5000, 0.5, 1]]\n[[pin]]\nparticles = [0]\n\
+        shift = { by = [0.1, 0, 0], start = 0.105, end = 0.11 }\n";
+    let jet = "[[fluid]]\ndimensions = 2\nsize = [1, 1, 0]\nspacing = 0.05\nat = [0.5, 0.5, 0]\n\
+        density = 1000\nsound = 30\n\
+        inflow = { size = [0, 0.5, 0], at = [0, 0.5, 0], velocity = [1, 0, 0], duration = 1 }\n";
+    let scenes = [motor.to_owned() + basin, pin.to_owned() + basin, jet.to_owned()];
+    for (k, text) in scenes.iter().enumerate() {
+        for (name, control) in [
+            ("verlet", Control::Step(5e-4)),
+            ("rk4", Control::Step(1e-3)),
+            ("dopri5", Control::Tolerance(1e-5)),
+        ] {
+            let mut run = Simulation::new(described(text), method(name), control).unwrap();
+            let end = run.advance_to(0.25).and_then(|()| run.conclude());
+            end.unwrap_or_else(|why| panic!("scene {k} by {name}: {why}"));
+            assert_eq!(run.gained(), None, "scene {k} by {name}");
+        }
+    }
+    let mut run = Simulation::new(described(&scenes[1]), method("euler"), Control::Step(5e-3));
+    let run = run.as_mut().unwrap();
+    let end = run.advance_to(1.0).and_then(|()| run.conclude());
+    assert!(end.is_err() || run.gained().is_some());
+}
+
+/// A pin that begins to move, after an adaptive method took a long step at rest, works from then on.
+#[test]
+fn a_pin_that_begins_to_move_is_not_accused() {
+    let text = "gravity = [0, -9.81, 0]\n[particles]\npositions = [[0, 0, 0], [0, -1.00981, 0]]\n\
+        masses = [1, 0.1]\nsprings = [[0, 1, 100, 1, 0]]\n[[pin]]\nparticles = [0]\n\
+        turn = { about = [1, 0, 0], axis = [0, 0, 1], rate = 2, start = 0.5 }\n";
+    for name in ["dopri5", "rkf45", "verner65", "dprkn86", "bdf"] {
+        let control = Control::Tolerance(1e-5);
+        let mut run = Simulation::new(described(text), method(name), control).unwrap();
+        let end = run.advance_to(1.5).and_then(|()| run.conclude());
+        end.unwrap_or_else(|why| panic!("{name}: {why}"));
+        assert_eq!(run.gained(), None, "{name}");
+    }
+}
+
 #[test]
 fn a_sheet_that_is_blown_away_is_not_accused() {
     for wind in [
