@@ -93,7 +93,8 @@ pub struct RunOptions {
     /// else the solver's
     #[arg(value_parser = step, allow_negative_numbers = true)]
     pub step: Option<f64>,
-    /// Simulated seconds, by default the scene's own; the last state is that at exactly this time
+    /// Simulated seconds, by default the scene's own; a single state is that at exactly this time,
+    /// and the last of several frames is at it or before
     #[arg(long, value_name = "T", value_parser = until, allow_negative_numbers = true)]
     pub until: Option<f64>,
     #[command(flatten)]

@@ -184,6 +184,7 @@ fn wrong_usage_is_one_line() {
         ("chart --error energy --scene simple", "ask for position or phase", 2),
         ("choose --error 1e-3 --of strain --scene simple", "ask for position or phase", 2),
         ("chart --error impact --scene chain", "no surfaces touch in the scene chain", 2),
+        ("choose --error 1e-3 --of strain --scene cantilever", "cantilever has no springs", 2),
         (
             "choose --error 1e-3 --of impact --until 0.1 --scene bounce.toml",
             "no impact begins or ends in 0.1 s",

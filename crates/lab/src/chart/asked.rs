@@ -2,7 +2,7 @@
 //! times at which errors are taken; and scenes and units of errors in words.
 
 use a3_core::accuracy::Metric;
-use a3_core::{Disturbances, Error, Method, Model, Scene, integrators};
+use a3_core::{Disturbances, Error, Method, Model, Scene, Spring, SpringKind, integrators};
 use a3_files::bounds::{HORIZONS, OWN_HORIZONS};
 use a3_files::failure::Failure;
 
@@ -79,14 +79,21 @@ pub fn check_scene(scene: &Scene) -> Result<(), Failure> {
     }
 }
 
-/// Checks that the metric is defined for the scene: springs, energy and momentum need a network,
-/// penetration and impacts need surfaces that touch.
+/// Checks that the metric is defined for the scene: energy and momentum need a network, strain needs
+/// springs, penetration and impacts need surfaces that touch.
 pub fn check_metric(metric: Metric, scene: &Scene) -> Result<(), Failure> {
     let of_contact = matches!(metric, Metric::Penetration | Metric::Impact);
     let network = scene.model.network();
     if of_contact && network.is_none_or(|network| network.contact_layer().is_none()) {
         return Err(Failure::usage(format!(
             "no surfaces touch in the scene {}: ask for another error, or give it self_collision = true",
+            scene.name
+        )));
+    }
+    let is_structural = |spring: Spring| spring.kind == SpringKind::Structural;
+    if metric == Metric::Strain && network.is_some_and(|it| !it.springs().any(is_structural)) {
+        return Err(Failure::usage(format!(
+            "the scene {} has no springs: ask for another error than strain",
             scene.name
         )));
     }
