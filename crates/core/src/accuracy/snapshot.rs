@@ -28,6 +28,8 @@ const ROUNDING: f64 = 1e-12;
 pub(super) struct Snapshot {
     /// Number of particles.
     particles: usize,
+    /// Number of these that are in walls, which have no errors.
+    walls: usize,
     /// Positions (m): all x, all y, all z. Without particles, all numbers of the state.
     positions: Vec<f64>,
     /// Velocities (m/s): the rates of change of these.
@@ -98,6 +100,9 @@ impl Snapshot {
                 .map(|s| distance(positions, s.i, s.j) / s.law.rest_length)
                 .collect(),
             particles: inverse_masses.len(),
+            walls: network.fluid().map_or(0, |fluid| {
+                network.pins().filter(|(i, _)| fluid.members().contains(*i)).count()
+            }),
             positions: positions.to_vec(),
             velocities: velocities.to_vec(),
             ..Self::default()
@@ -236,15 +241,19 @@ impl Snapshot {
         }
     }
 
-    /// Returns the sum over the axes of the mean over the particles in the scope; without
-    /// particles, the mean over the numbers in the scope, or over all if quantities are compared.
+    /// Returns the sum over the axes of the mean over the particles in the scope, without those in
+    /// walls; without particles, the mean over the numbers in the scope, or over all if quantities
+    /// are compared.
     fn mean(&self, scope: Scope, numbers: impl Iterator<Item = f64>) -> f64 {
         let (only, n) = match self.particles {
             0 if !self.quantities.is_empty() => (None, self.positions.len()),
             0 => (scope.particle, self.positions.len()),
             n => (scope.particle, n),
         };
-        mean(only, n, numbers)
+        match only {
+            None if self.walls < n => mean(None, n - self.walls, numbers),
+            _ => mean(only, n, numbers),
+        }
     }
 
     /// Extrapolates each quantity to fine + (fine - coarse) * `share`.
@@ -256,6 +265,7 @@ impl Snapshot {
         };
         Self {
             particles: fine.particles,
+            walls: fine.walls,
             positions: all(&coarse.positions, &fine.positions),
             velocities: all(&coarse.velocities, &fine.velocities),
             energy: both(&coarse.energy, &fine.energy),
