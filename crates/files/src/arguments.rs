@@ -94,12 +94,15 @@ pub fn grid(text: &str) -> Result<Grid, String> {
 
 /// Finds a solver by its letter or its name.
 pub fn solver(text: &str) -> Result<&'static Method, String> {
-    integrators::find(text).ok_or_else(|| match nearest_of(text, &[]) {
-        Some(name) => {
-            format!("there is no such solver; did you mean {name}? `a3 solvers` lists all of them")
-        }
-        None => format!("there is no such solver; the solvers are {}", letters_and_names()),
+    integrators::find(text).ok_or_else(|| {
+        let meant = guess(nearest_of(text, &[]));
+        format!("there is no such solver; {meant}`a3 solvers` lists all of them")
     })
+}
+
+/// Asks whether a name was meant, if there is one.
+pub fn guess(name: Option<String>) -> String {
+    name.map_or_else(String::new, |name| format!("did you mean {name}? "))
 }
 
 /// Returns the command, the solver or the letter of a solver that is most like a word, if one is.
@@ -116,11 +119,4 @@ pub fn solver_and_step(text: &str) -> Result<(&'static Method, Option<f64>), Str
         Some((name, number)) => Ok((solver(name)?, Some(step(number)?))),
         None => Ok((solver(text)?, None)),
     }
-}
-
-/// Lists the solvers that have letters.
-pub fn letters_and_names() -> String {
-    let names = integrators::METHODS.iter();
-    let names: Vec<_> = names.filter_map(|m| Some(format!("{} ({})", m.letter?, m.name))).collect();
-    names.join(", ")
 }

@@ -8,7 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Command};
 
 #[cfg(feature = "window")]
-use a3_files::arguments::{letters_and_names, nearest_of, solver_and_step};
+use a3_files::arguments::{guess, nearest_of, solver_and_step};
 use a3_files::arguments::{pair, solver, within};
 use a3_files::bounds::{Allowed, BUDGETS, ERRORS, FACTORS, HORIZONS};
 
@@ -186,15 +186,8 @@ fn solver_or_command(text: &str, cli: &Command) -> Result<&'static Method, Strin
     if commands.contains(&text) {
         return Err(format!("a command comes before its options, as in `a3 {text} --scene flag`"));
     }
-    Err(match nearest_of(text, &commands) {
-        Some(name) => format!(
-            "there is no such command or solver; did you mean {name}? `a3 --help` lists the commands, and `a3 solvers` \
-             the solvers"
-        ),
-        None => format!(
-            "there is no such command or solver; the commands are {}; the solvers are {}",
-            commands.join(", "),
-            letters_and_names()
-        ),
-    })
+    let meant = guess(nearest_of(text, &commands));
+    Err(format!(
+        "there is no such command or solver; {meant}`a3 --help` lists the commands, and `a3 solvers` the solvers"
+    ))
 }

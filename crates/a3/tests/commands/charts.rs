@@ -174,7 +174,7 @@ fn wrong_usage_is_one_line() {
     let bounce = include_str!("../../../../docs/scenes/bounce.toml");
     folder.write("bounce.toml", bounce);
     for (words, right, code) in [
-        ("chart --solvers t,q", "the solvers are", 2),
+        ("chart --solvers t,q", "`a3 solvers` lists", 2),
         ("chart --stiffness 1,0", "such as 10", 2),
         ("chart --stiffness -1", "such as 10", 2),
         ("chart --stiffness 2 --scene simple", "has no springs", 2),
