@@ -95,22 +95,22 @@ pub fn grid(text: &str) -> Result<Grid, String> {
 /// Finds a solver by its letter or its name.
 pub fn solver(text: &str) -> Result<&'static Method, String> {
     integrators::find(text).ok_or_else(|| {
-        let meant = guess(nearest_of(text, &[]));
+        let meant = hint(text, &[]);
         format!("there is no such solver; {meant}`a3 solvers` lists all of them")
     })
 }
 
-/// Asks whether a name was meant, if there is one.
-pub fn guess(name: Option<String>) -> String {
-    name.map_or_else(String::new, |name| format!("did you mean {name}? "))
-}
-
-/// Returns the command, the solver or the letter of a solver that is most like a word, if one is.
-pub fn nearest_of(text: &str, commands: &[&str]) -> Option<String> {
+/// Returns what may be meant by a word that names no solver: a step, or the command, the solver or
+/// the letter of a solver that is most like it.
+pub fn hint(text: &str, commands: &[&str]) -> String {
+    if text.parse::<f64>().is_ok() {
+        return format!("a step comes after its solver, as in `r {text}`; ");
+    }
     let letters: Vec<_> =
         integrators::METHODS.iter().filter_map(|m| Some(m.letter?.to_string())).collect();
     let names = commands.iter().copied().chain(integrators::METHODS.iter().map(|m| m.name));
-    nearest(text, names.chain(letters.iter().map(String::as_str))).map(str::to_owned)
+    let near = nearest(text, names.chain(letters.iter().map(String::as_str)));
+    near.map_or_else(String::new, |name| format!("did you mean {name}? "))
 }
 
 /// Reads a solver, and its step or tolerance after a colon, if there is one.

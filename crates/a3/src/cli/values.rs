@@ -8,7 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Command};
 
 #[cfg(feature = "window")]
-use a3_files::arguments::{guess, nearest_of, solver_and_step};
+use a3_files::arguments::{hint, solver_and_step};
 use a3_files::arguments::{pair, solver, within};
 use a3_files::bounds::{Allowed, BUDGETS, ERRORS, FACTORS, HORIZONS};
 
@@ -186,7 +186,7 @@ fn solver_or_command(text: &str, cli: &Command) -> Result<&'static Method, Strin
     if commands.contains(&text) {
         return Err(format!("a command comes before its options, as in `a3 {text} --scene flag`"));
     }
-    let meant = guess(nearest_of(text, &commands));
+    let meant = hint(text, &commands);
     Err(format!(
         "there is no such command or solver; {meant}`a3 --help` lists the commands, and `a3 solvers` the solvers"
     ))

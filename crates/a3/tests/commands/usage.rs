@@ -23,8 +23,8 @@ fn limits_of_adaptive_steps_are_for_adaptive_solvers() {
 fn wrong_usage_is_one_line_that_says_what_is_right() {
     let folder = &Folder::new();
     for (words, says) in [
-        ("q", "t (trapezoid)"),
-        ("0.01", "e (euler)"),
+        ("q", "`a3 solvers` the solvers"),
+        ("0.01", "as in `r 0.01`"),
         ("t -0.01", "such as 0.01"),
         ("t -1e-3", "such as 0.01"),
         ("t -inf", "such as 0.01"),
@@ -93,7 +93,7 @@ fn wrong_comparisons_too() {
         ("compare", "2 to 4"),
         ("compare e:0.05", "a3 compare e:0.05 r:0.05"),
         ("compare e t r s v", "not 5"),
-        ("compare e:0.05 q:0.05", "r (rk4)"),
+        ("compare e:0.05 q:0.05", "`a3 solvers`"),
         ("compare e:0.05 r:", "such as 0.01"),
         ("compare e:0.05 r:-1", "such as 0.01"),
         ("compare e r:0.01:0.02", "such as 0.01"),

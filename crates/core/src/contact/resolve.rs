@@ -102,9 +102,9 @@ impl ContactPhase {
         impulses.add_forces(*h, f);
     }
 
-    /// Returns the sum of the magnitudes (N s) of the impulses that the particles which impulses met
-    /// in the last step have got, or of those by which forces f (N), n x 3, drive them, where these
-    /// are larger: an implicit method foresees how forces give way, so that a smaller impulse stops
+    /// Returns the sum of the magnitudes (N s) of the impulses on the particles that met something
+    /// in the last step, or of those by which forces f (N), n x 3, drive them, where these are
+    /// larger: an implicit method foresees how forces give way, so that a smaller impulse stops
     /// what it lets move, though something holds all of the force.
     pub(crate) fn reaction(&self, f: &[f64]) -> f64 {
         let mut held = vec![0.0; f.len()];

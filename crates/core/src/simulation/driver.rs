@@ -369,8 +369,8 @@ pub struct Span {
 /// Returns the end of the last step of a run.
 fn last_end<'a>(within: &'a Within, state: &'a RunState) -> End<'a> {
     let (t, y) = (within.end()).unwrap_or_else(|| (state.time(), &state.y));
-    let order = state.method.order;
-    End { order, t, y }
+    let (order, is_adaptive) = (state.method.order, state.control.step().is_none());
+    End { order, is_adaptive, t, y }
 }
 
 /// Step that contains the time shown, if one does.

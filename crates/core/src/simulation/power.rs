@@ -51,6 +51,9 @@ const ROUNDING: f64 = 1e-12;
 pub(super) struct End<'a> {
     /// Order of the method.
     pub order: u32,
+    /// Whether the step may be long beside those in which prescribed motion begins, as those of an
+    /// adaptive method are at rest. A fixed step feels what begins at its end.
+    pub is_adaptive: bool,
     /// Time (s).
     pub t: f64,
     /// State.
@@ -264,7 +267,7 @@ impl PinWork {
     fn work(&mut self, network: &Network, end: End) -> f64 {
         let [mut middle, mut own] = std::mem::take(&mut self.scratch);
         self.copy_state(end.y, &mut own);
-        let jumps = may_jump(network, end.t);
+        let jumps = may_jump(network, end);
         if jumps {
             self.place_pins(end.t.next_down(), &mut own);
         }
@@ -348,10 +351,11 @@ impl WindWork {
         Self { t, x, f, scratch }
     }
 
-    fn work(&mut self, network: &Network, End { t, y, .. }: End) -> f64 {
+    fn work(&mut self, network: &Network, end: End) -> f64 {
+        let End { t, y, .. } = end;
         let (x, v) = network.halves(y);
         let (free, n) = (network.inverse_masses(), network.particles());
-        let jumps = may_jump(network, t);
+        let jumps = may_jump(network, end);
         let blow = |t: f64, f: &mut [f64]| {
             f.fill(0.0);
             add_wind(network, t, x, v, f);
@@ -463,9 +467,10 @@ impl TotalWork {
     }
 }
 
-/// Returns whether a prescribed velocity, or wind, may jump at time t (s).
-fn may_jump(network: &Network, t: f64) -> bool {
-    next_known_time(network, t.next_down()) <= t
+/// Returns whether a prescribed velocity, or wind, may jump at the end of a step, so that the step
+/// ends before that.
+fn may_jump(network: &Network, End { is_adaptive, t, .. }: End) -> bool {
+    is_adaptive && next_known_time(network, t.next_down()) <= t
 }
 
 /// Returns the time (s) by which the power is evaluated before or after a time t (s) at which a

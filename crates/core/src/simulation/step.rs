@@ -247,8 +247,9 @@ impl Pipeline {
         if let Some(share) = share_of_bulge(bulge, h) {
             return Err(Setback::Again { h, share });
         }
-        let (order, y) = (state.method.order, &state.y[..]);
-        let end = End { order, t: part.end, y };
+        let (order, is_adaptive) = (state.method.order, state.control.step().is_none());
+        let y = &state.y[..];
+        let end = End { order, is_adaptive, t: part.end, y };
         if let Some(cause) = self.watch.check_before_safeguard(model, &mut state.balance, end) {
             return Err(Setback::BlowUp(cause));
         }
@@ -371,8 +372,8 @@ impl Pipeline {
         let lost = self.bounds.violation(model, &state.y);
         let t = model.network().map_or(t, |it| last_moment(it, state, t));
         let RunState { y, balance, .. } = state;
-        let order = state.method.order;
-        let end = End { order, t, y };
+        let (order, is_adaptive) = (state.method.order, state.control.step().is_none());
+        let end = End { order, is_adaptive, t, y };
         let mut met = settled.met;
         let network = model.network().filter(|_| met.impulse.max(met.guarded.impulse) > 0.0);
         let reaction = network.map_or(0.0, |network| self.phases.reaction(network, t, y));

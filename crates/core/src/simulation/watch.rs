@@ -124,8 +124,10 @@ impl Watch {
     /// ends at `end` (s).
     pub fn disturb(&mut self, model: &Model, state: &mut RunState, t: f64, end: f64) {
         let (y, order) = (&state.y[..], state.method.order);
+        let is_adaptive = state.control.step().is_none();
         let network = model.network().filter(|_| !state.balance.is_disturbed());
-        let rest = network.map(|network| self.power.rest(network, End { order, t, y }));
+        let rest =
+            network.map(|network| self.power.rest(network, End { order, is_adaptive, t, y }));
         self.power.forget();
         let Some(network) = network else {
             return;

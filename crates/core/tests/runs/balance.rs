@@ -331,8 +331,8 @@ fn a_ball_on_a_box_that_jumps_gains_nothing() {
     }
 }
 
-/// A box sinks onto a jelly. Implicit methods foresee how it gives way, and what the box then has to
-/// stop is little; its work is no gain all the same. What a step that is too long adds is one.
+/// A box sinks onto a jelly. Implicit methods foresee how it gives way, and what the box then has
+/// to stop is little; its work is no gain all the same. What a step that is too long adds is one.
 #[test]
 fn a_jelly_that_a_box_presses_gains_nothing() {
     let text = "self_collision = true

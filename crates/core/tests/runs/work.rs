@@ -156,8 +156,8 @@ fn a_shaker_is_not_accused() {
     assert!(end.is_err() || run.gained().is_some());
 }
 
-/// What drives a scene is not accused because there are many particles: a motor, or a pin that jerks,
-/// beside a basin, and water that begins to flow in. A step that is too long still is.
+/// What drives a scene is not accused because there are many particles: a motor, or a pin that
+/// jerks, beside a basin, and water that begins to flow in. A step that is too long still is.
 #[test]
 fn many_particles_hide_no_work() {
     let basin = "[[fluid]]\ndimensions = 2\nsize = [1, 0.5, 0]\nspacing = 0.05\nat = [0.5, 0.25, 0]\n\
@@ -189,7 +189,8 @@ fn many_particles_hide_no_work() {
     assert!(end.is_err() || run.gained().is_some());
 }
 
-/// A pin that begins to move, after an adaptive method took a long step at rest, works from then on.
+/// A pin that begins to move, after an adaptive method took a long step at rest, works from then
+/// on.
 #[test]
 fn a_pin_that_begins_to_move_is_not_accused() {
     let text = "gravity = [0, -9.81, 0]\n[particles]\npositions = [[0, 0, 0], [0, -1.00981, 0]]\n\

@@ -79,8 +79,8 @@ pub fn check_scene(scene: &Scene) -> Result<(), Failure> {
     }
 }
 
-/// Checks that the metric is defined for the scene: energy and momentum need a network, strain needs
-/// springs, penetration and impacts need surfaces that touch.
+/// Checks that the metric is defined for the scene: energy and momentum need a network, strain
+/// needs springs, penetration and impacts need surfaces that touch.
 pub fn check_metric(metric: Metric, scene: &Scene) -> Result<(), Failure> {
     let of_contact = matches!(metric, Metric::Penetration | Metric::Impact);
     let network = scene.model.network();
