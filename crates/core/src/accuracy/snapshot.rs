@@ -100,9 +100,7 @@ impl Snapshot {
                 .map(|s| distance(positions, s.i, s.j) / s.law.rest_length)
                 .collect(),
             particles: inverse_masses.len(),
-            walls: network.fluid().map_or(0, |fluid| {
-                network.pins().filter(|(i, _)| fluid.members().contains(*i)).count()
-            }),
+            walls: network.fixed_walls(),
             positions: positions.to_vec(),
             velocities: velocities.to_vec(),
             ..Self::default()

@@ -126,6 +126,13 @@ impl Network {
         (self.is_pinned(i) || self.is_carried(i)) && self.fluid().is_some_and(contains)
     }
 
+    /// Returns the number of particles in walls that are pinned, and so have no errors.
+    #[must_use]
+    pub fn fixed_walls(&self) -> usize {
+        let of = |fluid: &Fluid| self.pins().filter(|(i, _)| fluid.members().contains(*i)).count();
+        self.fluid().map_or(0, of)
+    }
+
     /// Returns the bend springs that buckle.
     pub fn buckling(&self) -> impl Iterator<Item = Buckling> {
         self.elements.buckling()

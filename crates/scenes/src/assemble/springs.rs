@@ -25,6 +25,7 @@ impl Body for Chain {
         at("stiffness", at_least(0.0, "it", self.stiffness))?;
         at("damping", at_least(0.0, "it", self.damping))?;
         let length = (to - from).norm() / (n - 1) as f64;
+        refuse!(if from == to => "to": "a chain leads to another point than `from`");
         let rest_length = self.rest_length.unwrap_or(length);
         at("rest_length", at_least(0.0, "it", rest_length))?;
         let (stiffness, damping) = (self.stiffness, self.damping);
@@ -35,8 +36,7 @@ impl Body for Chain {
         let masses = vec![self.mass; n];
         let places = (0..n).map(|i| from + (to - from) * (i as f64 / (n - 1) as f64));
         let first = assembly.add_particles(&masses, places, self.velocity);
-        let spacing = if length > 0.0 { length } else { POINT_SPACING };
-        assembly.skins.extend(skin.uniform(&masses, spacing)?);
+        assembly.skins.extend(skin.uniform(&masses, length)?);
         let edges = (first..first + n - 1).map(|i| [i as u32, i as u32 + 1]);
         assembly.edges.extend(edges);
         let links = (0..n - 1).map(|i| [i, i + 1]);

@@ -67,6 +67,8 @@ gravity = [0, -9.81, 0]
         line 1: box.turn.end: it must be later than 1 s, not 1
     sphere = [{ center = [0, 0, 0], radius = 1, sine = { amplitude = [1, 0, 0], rate = 1 }, turn = { about = [1, 0, 0], axis = [0, 1, 0], rate = 1 } }] =>
         line 1: sphere.turn.about: give either `sine` or `turn.about`, not both
+    chain = [{ particles = 3, from = [1, 1, 1], to = [1, 1, 1], mass = 1, stiffness = 1 }] =>
+        line 1: chain.to: a chain leads to another point than `from`
     pin = [{ particles = [0], until = 0 }] => line 1: pin.until: it must be a finite number above 0
     pin = [{ particles = [0], body = 0, until = 1 }] =>
         line 1: pin.until: what is attached to a body stays so

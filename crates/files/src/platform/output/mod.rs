@@ -38,8 +38,9 @@ pub fn check_ending(path: &Path, extensions: &[&str]) -> Result<(), Failure> {
             [] => String::new(),
             others => format!("{} or .", others.join(", .")),
         };
+        let folder = if path.is_dir() { "this is a folder, and " } else { "" };
         return Err(Failure::usage(format!(
-            "{}: the name of the file must end in .{others}{last}",
+            "{}: {folder}the name of the file must end in .{others}{last}",
             path.display(),
         )));
     }
