@@ -48,7 +48,7 @@ pub(super) struct Snapshot {
     /// Largest depth of penetration over the thickness.
     penetration: f64,
     /// First impact so far.
-    impact: Impact,
+    impact: FirstImpact,
 }
 
 impl Snapshot {
@@ -78,7 +78,7 @@ impl Snapshot {
         Self {
             energy: network.energy_of(t, y).total(),
             penetration,
-            impact: Impact::at_start(t),
+            impact: FirstImpact::at_start(t),
             ..Self::of_motion(network, y)
         }
     }
@@ -272,7 +272,7 @@ impl Snapshot {
             quantities: all(&coarse.quantities, &fine.quantities),
             sizes: fine.sizes.clone(),
             penetration: both(&coarse.penetration, &fine.penetration),
-            impact: Impact::extrapolate(&coarse.impact, &fine.impact, both),
+            impact: FirstImpact::extrapolate(&coarse.impact, &fine.impact, both),
         }
     }
 }
@@ -313,14 +313,14 @@ fn structural(network: &Network) -> impl Iterator<Item = crate::Spring> {
 
 /// Times of the first impact; one that has not begun or ended yet has the time of the state.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Impact {
+pub(super) struct FirstImpact {
     /// Time of the state (s).
     t: f64,
     /// Time at which surfaces touched first, and time at which nothing touched any more (s).
     times: [f64; 2],
 }
 
-impl Impact {
+impl FirstImpact {
     /// Creates the impact of a run that starts at time t (s).
     pub fn at_start(t: f64) -> Self {
         Self { t, times: [t; 2] }

@@ -8,7 +8,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::pattern::{Pattern, Place};
+use super::pattern::{BlockPlace, Pattern};
 use crate::fused::mul_add;
 use crate::vectors::Arch;
 
@@ -70,7 +70,7 @@ impl<const B: usize, const P: usize> Factor<B, P> {
     }
 
     /// Returns the columns of a block below the diagonal.
-    pub fn block_mut(&mut self, place: Place) -> &mut Block<B, P> {
+    pub fn block_mut(&mut self, place: BlockPlace) -> &mut Block<B, P> {
         &mut self.blocks[place.block as usize]
     }
 

@@ -8,7 +8,7 @@ mod factor;
 mod pattern;
 
 pub(crate) use factor::{Block, Factor};
-pub(crate) use pattern::{Pattern, Place, neighbours, order};
+pub(crate) use pattern::{BlockPlace, Pattern, neighbours, order};
 
 #[cfg(test)]
 mod tests;

@@ -22,7 +22,7 @@ pub(crate) struct Pattern {
 
 /// Place of a block of the matrix in the factor.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct BlockPlace {
     pub block: u32,
     /// Whether it is stored transposed.
     pub transposed: bool,
@@ -107,12 +107,12 @@ impl Pattern {
 
     /// Returns the place of the block in row i and column j of the matrix, which must be one of its
     /// pairs.
-    pub fn place(&self, i: u32, j: u32) -> Place {
+    pub fn place(&self, i: u32, j: u32) -> BlockPlace {
         let [row, column] = [i, j].map(|i| self.ranks[i as usize]);
         let (low, high) = (row.min(column), row.max(column));
         let own = self.column(low as usize);
         let first = own.start as u32;
-        Place {
+        BlockPlace {
             block: first + self.rows[own].partition_point(|row| *row < high) as u32,
             transposed: row < column,
         }

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::constraint::{Constraint, Equation, Projected};
 use super::joint::{JointEquation, Side};
-use super::solve::{Lever, Pattern, Row, System, Turning};
+use super::solve::{Lever, Row, RowPattern, System, Turning};
 use crate::error::{Error, positive};
 use crate::scratch::Scratch;
 use crate::threads::each;
@@ -15,7 +15,7 @@ use crate::threads::each;
 /// A particle under a constraint, with the places of what moves it: the particle itself or its
 /// body's centre, and the rotation of the body, or 0.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Held {
+pub(super) struct HeldEnd {
     particle: usize,
     pub(super) place: usize,
     pub(super) turn: usize,
@@ -42,13 +42,13 @@ pub(crate) struct Constraints {
     pub(super) particles: BTreeMap<usize, usize>,
     pub(super) rotations: BTreeMap<usize, usize>,
     /// The particles of each constraint.
-    pub(super) ends: Vec<[Held; 2]>,
+    pub(super) ends: Vec<[HeldEnd; 2]>,
     /// The constraint of each equation, and its number within the constraint.
     pub(super) owners: Vec<(usize, usize)>,
     /// Natural frequency (1/s) with which errors decay.
     baumgarte_frequency: f64,
     /// Pattern of equations that move the same things, computed on first use.
-    pub(super) pattern: OnceLock<Arc<Pattern>>,
+    pub(super) pattern: OnceLock<Arc<RowPattern>>,
     pub(super) scratch: Scratch<System>,
 }
 
@@ -96,13 +96,13 @@ impl Constraints {
             let turns = |(center, _): &(usize, usize)| joint.is_some() || *center != particle;
             let body = carrier(particle).filter(turns);
             let mover = body.map_or(particle, |(center, _)| center);
-            Held {
+            HeldEnd {
                 particle,
                 place: place(&mut self.particles, mover, Moved::Particle(mover)),
                 turn: body.map_or(0, |(_, k)| place(&mut self.rotations, k, Moved::Body(k))),
             }
         };
-        let nothing = Held { particle: first, place: 0, turn: 0 };
+        let nothing = HeldEnd { particle: first, place: 0, turn: 0 };
         self.ends.push([hold(first), second.map_or(nothing, hold)]);
         let (own, owners) = (self.all.len(), &mut self.owners);
         let before = owners.len();
@@ -194,7 +194,7 @@ impl Constraints {
     }
 
     /// Adds the torques by a row of a joint about the centres of its bodies.
-    fn add_torques(&self, system: &System, row: &Row, ends: [Held; 2], torques: &mut [f64]) {
+    fn add_torques(&self, system: &System, row: &Row, ends: [HeldEnd; 2], torques: &mut [f64]) {
         for end in ends {
             if let (Moved::Body(k), Some(turning)) =
                 (self.moved[end.turn], &system.turnings[end.turn])
@@ -361,22 +361,22 @@ impl Constraints {
     }
 
     /// Returns the pattern of what each equation moves.
-    pub(super) fn pattern(&self) -> &Arc<Pattern> {
+    pub(super) fn pattern(&self) -> &Arc<RowPattern> {
         self.pattern.get_or_init(|| Arc::new(self.find_pattern()))
     }
 
     /// Finds the pattern of what each equation moves.
-    fn find_pattern(&self) -> Pattern {
+    fn find_pattern(&self) -> RowPattern {
         let rows = self.owners.iter().map(|(owner, _)| {
             let [a, b] = self.ends[*owner];
             [a.place, a.turn, b.place, b.turn]
         });
-        Pattern::new(&rows.collect::<Vec<_>>(), self.moved.len())
+        RowPattern::new(&rows.collect::<Vec<_>>(), self.moved.len())
     }
 }
 
 /// Fills a row of J with an equation of a joint.
-fn fill(row: &mut Row, ends: [Held; 2], turnings: &[Option<Turning>], equation: &JointEquation) {
+fn fill(row: &mut Row, ends: [HeldEnd; 2], turnings: &[Option<Turning>], equation: &JointEquation) {
     let signs = [1.0, -1.0];
     for ((end, sign), lever) in ends.iter().zip(signs).zip(equation.levers) {
         row.add(end.place, equation.gradient * sign);

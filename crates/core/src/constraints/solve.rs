@@ -44,7 +44,7 @@ pub(super) struct System {
     pub vectors: Vec<Vector3<f64>>,
     pub turnings: Vec<Option<Turning>>,
     pub rows: Vec<Row>,
-    factor: Option<Factor>,
+    factor: Option<RowFactor>,
 }
 
 impl System {
@@ -56,7 +56,7 @@ impl System {
     }
 
     /// Finds the multipliers. Returns whether A is nearly singular, and was made softer.
-    pub fn solve<'a>(&mut self, pattern: impl Fn() -> &'a Arc<Pattern>) -> bool {
+    pub fn solve<'a>(&mut self, pattern: impl Fn() -> &'a Arc<RowPattern>) -> bool {
         self.solve_exactly(pattern);
         let (mut all, mut amplified) = (0.0, 0.0);
         for row in &self.rows {
@@ -73,7 +73,7 @@ impl System {
     }
 
     /// Finds the multipliers, however large they are.
-    pub fn solve_exactly<'a>(&mut self, pattern: impl Fn() -> &'a Arc<Pattern>) {
+    pub fn solve_exactly<'a>(&mut self, pattern: impl Fn() -> &'a Arc<RowPattern>) {
         if self.rows.len() < MIN_DIRECT_ROWS {
             self.iterate(0.0);
         } else if !self.solve_directly(pattern()) {
@@ -87,9 +87,9 @@ impl System {
     }
 
     /// Solves by a factorisation of A. Returns whether that succeeded.
-    fn solve_directly(&mut self, pattern: &Arc<Pattern>) -> bool {
+    fn solve_directly(&mut self, pattern: &Arc<RowPattern>) -> bool {
         if !self.factor.as_ref().is_some_and(|f| f.is_of(pattern)) {
-            self.factor = Factor::new(pattern);
+            self.factor = RowFactor::new(pattern);
         }
         let Some(factor) = &mut self.factor else {
             return false;
@@ -212,13 +212,13 @@ const MAX_ELEMENTS_PER_ROW: usize = 40;
 const MIN_INDEPENDENT_SQUARE: f64 = 1e-9;
 
 /// Pattern of the non-zero elements of A.
-pub(super) struct Pattern {
+pub(super) struct RowPattern {
     /// Pairs of rows that share something they move, the lower one first; `None` if A or its factor
     /// would be too large.
     meeting: Option<(Vec<[u32; 2]>, cholesky::Pattern)>,
 }
 
-impl Pattern {
+impl RowPattern {
     /// Creates a pattern of rows, each with the places of all that it moves, or 0; there are
     /// `places` of them.
     pub fn new(rows: &[[usize; 4]], places: usize) -> Self {
@@ -246,7 +246,7 @@ impl Pattern {
     }
 }
 
-impl fmt::Debug for Pattern {
+impl fmt::Debug for RowPattern {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let elements = self.meeting.as_ref().map(|(meeting, _)| meeting.len());
         write!(f, "Pattern of {elements:?} elements")
@@ -254,16 +254,16 @@ impl fmt::Debug for Pattern {
 }
 
 /// The factor of A.
-pub(super) struct Factor {
-    pattern: Arc<Pattern>,
+pub(super) struct RowFactor {
+    pattern: Arc<RowPattern>,
     numbers: cholesky::Factor<1, 1>,
     /// Place of each element of A below the diagonal.
-    places: Vec<cholesky::Place>,
+    places: Vec<cholesky::BlockPlace>,
 }
 
-impl Factor {
+impl RowFactor {
     /// Creates room for a factor of that pattern; `None` if it would be too large.
-    pub fn new(pattern: &Arc<Pattern>) -> Option<Self> {
+    pub fn new(pattern: &Arc<RowPattern>) -> Option<Self> {
         let (meeting, symbolic) = pattern.meeting.as_ref()?;
         Some(Self {
             numbers: cholesky::Factor::new(symbolic)?,
@@ -273,7 +273,7 @@ impl Factor {
     }
 
     /// Returns whether it is a factor of that pattern.
-    pub fn is_of(&self, pattern: &Arc<Pattern>) -> bool {
+    pub fn is_of(&self, pattern: &Arc<RowPattern>) -> bool {
         Arc::ptr_eq(&self.pattern, pattern)
     }
 
@@ -463,7 +463,7 @@ mod tests {
 
     #[test]
     fn a_row_that_moves_a_body_twice_does_not_meet_itself() {
-        let pattern = Pattern::new(&[[1, 2, 1, 2], [1, 2, 3, 4], [3, 4, 0, 0]], 5);
+        let pattern = RowPattern::new(&[[1, 2, 1, 2], [1, 2, 3, 4], [3, 4, 0, 0]], 5);
         let (meeting, _) = pattern.meeting.unwrap();
         assert_eq!(meeting, [[0, 1], [1, 2]]);
     }

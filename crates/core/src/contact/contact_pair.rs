@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::impulse::{across, change_in_impact, friction, limited_to, restored};
 use super::listing::Candidate;
 use super::motion::Motion;
-use super::response::{Joined, Response};
+use super::response::{JoinedBodies, Response};
 use super::skin::Law;
 use super::solids::{Arm, Field, SAME_TOLERANCE, Solid};
 use super::surface::Surface;
@@ -110,7 +110,7 @@ impl ContactPair {
     /// these inverse masses (1/kg), or bodies.
     pub fn join(
         &mut self,
-        joined: Joined,
+        joined: JoinedBodies,
         is_smooth: bool,
         inverse_masses: &[f64],
         solids: &[Solid],
@@ -318,7 +318,7 @@ impl ContactPair {
             return Vector3::zeros();
         }
         if self.is_rigid() {
-            let least = Least { before: Vector3::zeros(), speed: wanted, friction };
+            let least = LeastSpeed { before: Vector3::zeros(), speed: wanted, friction };
             return self.press(Vector3::zeros(), &least, inverse_masses, field);
         }
         let change = change_in_impact(relative, self.normal, 0.0, friction);
@@ -332,7 +332,7 @@ impl ContactPair {
     pub fn press(
         &self,
         so_far: Vector3<f64>,
-        least: &Least,
+        least: &LeastSpeed,
         inverse_masses: &[f64],
         field: &mut Field,
     ) -> Vector3<f64> {
@@ -367,7 +367,7 @@ impl ContactPair {
 
 /// Least separation after an impulse.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Least {
+pub(super) struct LeastSpeed {
     /// Relative velocity before all impulses (m/s).
     pub before: Vector3<f64>,
     /// Speed along the normal afterwards (m/s).
@@ -376,7 +376,7 @@ pub(super) struct Least {
     pub friction: f64,
 }
 
-impl Least {
+impl LeastSpeed {
     /// Returns a speed (m/s) that compares with those of the impact.
     pub fn size(&self) -> f64 {
         self.speed.abs() + self.before.norm()

@@ -17,7 +17,7 @@ use super::impulse::Impulses;
 use super::layer::{Buffers, ContactLayer};
 use super::listing::Candidate;
 use super::motion::{Guarded, Hit, Motion};
-use super::response::{Joined, Joints};
+use super::response::{JoinedBodies, Joints};
 use super::strike::{find, strike};
 use super::surface::Surface;
 use crate::geometry::closest;
@@ -104,7 +104,7 @@ fn guard_with(
         if bodies.are_struck {
             flight.straighten();
         }
-        let joined = bodies.joints.map(|joints| Joined { joints, y: y1 });
+        let joined = bodies.joints.map(|joints| JoinedBodies { joints, y: y1 });
         changed |= strike(surface, (h, joined), candidates, motion, &mut guarded);
     }
     let mut rounds = 0;

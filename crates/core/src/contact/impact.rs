@@ -7,11 +7,11 @@
 
 use nalgebra::Vector3;
 
-use super::contact_pair::{ContactPair, Least};
+use super::contact_pair::{ContactPair, LeastSpeed};
 use super::impulse::{rebound_speed, restored};
 use super::listing::Candidate;
 use super::motion::{Hit, Motion};
-use super::response::{Joined, Joints, Tie};
+use super::response::{JoinedBodies, Joints, Tie};
 use super::skin::Law;
 use super::solids::{Arm, Field, Solid};
 use super::surface::Surface;
@@ -31,7 +31,7 @@ const MARGIN_SHARE: f64 = 1e-6;
 pub(super) struct Blow {
     pub contact: ContactPair,
     /// Relative velocity before the impact, and the least speed at which the sides separate.
-    pub least: Least,
+    pub least: LeastSpeed,
     /// Whether the sides move on freely afterwards: with a speed of restitution, or into the range
     /// of their repulsion.
     pub is_free: bool,
@@ -44,7 +44,12 @@ pub(super) struct Blow {
 
 impl Blow {
     /// Creates a blow without an impulse yet.
-    pub fn new(contact: ContactPair, least: Least, is_free: bool, carried: Vector3<f64>) -> Self {
+    pub fn new(
+        contact: ContactPair,
+        least: LeastSpeed,
+        is_free: bool,
+        carried: Vector3<f64>,
+    ) -> Self {
         Self { contact, least, is_free, carried, impulse: Vector3::zeros() }
     }
 
@@ -234,12 +239,12 @@ impl Impact {
             contact.wanted =
                 restored(&law, distance) - (1.0 - time) * approach + MARGIN_SHARE * approach.abs();
         }
-        let least = Least { before, speed, friction: law.skin.friction };
+        let least = LeastSpeed { before, speed, friction: law.skin.friction };
         Some(Self { candidate: *pair, blow: Blow::new(contact, least, is_free, carried), left })
     }
 
     /// Lets constraints pass impulses on, if they hold something that is struck.
-    pub fn join(&mut self, joined: Joined, motion: &Motion) {
+    pub fn join(&mut self, joined: JoinedBodies, motion: &Motion) {
         let is_smooth = self.blow.least.friction == 0.0;
         let (masses, solids) = (&motion.inverse_masses, &motion.solids);
         self.blow.contact.join(joined, is_smooth, masses, solids);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::approach::Approach;
-use super::contact_pair::Least;
+use super::contact_pair::LeastSpeed;
 use super::impulse::{Impulses, across, change_in_impact, rebound_speed};
 use super::motion::Guarded;
 use super::obstacle::{Course, Obstacle, velocity};
@@ -61,7 +61,7 @@ pub(super) struct Noted<'a> {
 pub(super) struct PointImpact {
     pub particle: usize,
     pub normal: Vector3<f64>,
-    pub least: Least,
+    pub least: LeastSpeed,
     /// Velocity of the obstacle there (m/s).
     pub carried: Vector3<f64>,
     /// Time that remains of the step after a rebound (s).
@@ -81,7 +81,7 @@ pub struct Stop {
 impl PointImpact {
     /// Returns the change of the velocity (m/s) of a particle that is free.
     fn change(&self) -> Vector3<f64> {
-        let Least { before, speed, friction } = self.least;
+        let LeastSpeed { before, speed, friction } = self.least;
         change_in_impact(before, self.normal, speed, friction)
     }
 }
@@ -355,7 +355,7 @@ impl Met<'_> {
         PointImpact {
             particle: i,
             normal,
-            least: Least { before, speed, friction: self.friction },
+            least: LeastSpeed { before, speed, friction: self.friction },
             carried,
             left: 0.0,
         }

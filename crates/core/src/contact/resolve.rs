@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::contact_pair::{ContactPair, Least};
+use super::contact_pair::{ContactPair, LeastSpeed};
 use super::cut::Pinched;
 use super::guard::{Bodies, guard};
 use super::impact::{Blow, solve};
@@ -10,7 +10,7 @@ use super::impulse::{Impulses, change_in_impact, rebound_speed, shortest_rebound
 use super::layer::ContactLayer;
 use super::met::{Met, Noted, PointImpact, Statistics};
 use super::obstacle::{Obstacle, velocity};
-use super::response::{Joined, Tie};
+use super::response::{JoinedBodies, Tie};
 use super::solids::Field;
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
@@ -206,7 +206,7 @@ impl ContactPhase {
                     noted.held.push(PointImpact {
                         particle: i,
                         normal,
-                        least: Least { before: relative, speed, friction: obstacle.friction },
+                        least: LeastSpeed { before: relative, speed, friction: obstacle.friction },
                         carried,
                         left: 0.0,
                     });
@@ -329,7 +329,7 @@ fn pass_on(noted: &mut Noted, inverse_masses: &[f64], y1: &mut [f64]) {
     };
     let n = inverse_masses.len();
     let held = std::mem::take(noted.held);
-    let joined = Joined { joints, y: y1 };
+    let joined = JoinedBodies { joints, y: y1 };
     let mut blows: Vec<_> = (held.iter())
         .map(|impact| {
             let points = ([impact.particle as u32; 4], [1.0, 0.0, 0.0, 0.0]);

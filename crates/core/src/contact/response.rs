@@ -34,12 +34,12 @@ pub(crate) trait Joints {
 
 /// Constraints, with the state at the end of a step.
 #[derive(Clone, Copy)]
-pub(super) struct Joined<'a> {
+pub(super) struct JoinedBodies<'a> {
     pub joints: &'a dyn Joints,
     pub y: &'a [f64],
 }
 
-impl Joined<'_> {
+impl JoinedBodies<'_> {
     /// Returns the state with velocities of zero, and its number of particles.
     fn still(&self, solids: &[Solid]) -> (Vec<f64>, usize) {
         let mut y = self.y.to_vec();
@@ -138,7 +138,7 @@ impl Response {
     /// Finds the response to an impulse of 1 N s in a direction on the first of two arms, and the
     /// opposite on the second. The points change their velocities by `pushed` (m/s).
     pub fn new<'a>(
-        joined: Joined,
+        joined: JoinedBodies,
         solids: &[Solid],
         direction: Vector3<f64>,
         arms: impl Iterator<Item = &'a Arm>,
@@ -195,7 +195,7 @@ pub(super) struct Tie {
 
 impl Tie {
     /// Lists those of the constraints, with the velocities v (m/s) before the impacts.
-    pub fn all(joined: Joined, solids: &[Solid], v: &Field) -> Vec<Self> {
+    pub fn all(joined: JoinedBodies, solids: &[Solid], v: &Field) -> Vec<Self> {
         let pulls = joined.joints.pulls(joined.y);
         let ties = pulls.iter().map(|pushed| {
             let (mut y, n) = joined.still(solids);

@@ -15,7 +15,7 @@ use super::candidates::{Candidates, Linear};
 use super::impact::{Impact, solve};
 use super::listing::Candidate;
 use super::motion::{Guarded, Hit, Motion};
-use super::response::{Joined, Response, Tie};
+use super::response::{JoinedBodies, Response, Tie};
 use super::solids::Field;
 use super::surface::Surface;
 use crate::geometry::{closest, weighted};
@@ -27,7 +27,7 @@ const MAX_TIMES: usize = 12;
 /// there are pairs with a rigid side or with restitution. Joints follow impacts that rebound.
 pub(super) fn strike(
     surface: &Surface,
-    (h, joined): (f64, Option<Joined>),
+    (h, joined): (f64, Option<JoinedBodies>),
     candidates: &mut Candidates,
     motion: &mut Motion,
     guarded: &mut Guarded,
@@ -77,7 +77,7 @@ pub(super) fn strike(
         for impact in &impacts {
             guarded.first = guarded.first.min(1.0 - impact.left / h);
             impact.apply(&changes, h, motion);
-            if let Some(Joined { joints, .. }) = joined {
+            if let Some(JoinedBodies { joints, .. }) = joined {
                 impact.blow.note(&changes, joints);
             }
             guarded.impulses += 1;

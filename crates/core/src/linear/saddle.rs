@@ -10,7 +10,7 @@
 use nalgebra::Matrix3;
 
 use super::tangent::Tangent;
-use crate::cholesky::{Block, Factor, Pattern, Place};
+use crate::cholesky::{Block, BlockPlace, Factor, Pattern};
 use crate::held::Joint;
 
 /// The addition e over an upper bound of J A^-1 JT.
@@ -21,9 +21,9 @@ pub(crate) struct Saddle {
     pattern: Pattern,
     factor: Factor<3, 4>,
     /// Place of the block of each coupling in the matrix.
-    places: Vec<Place>,
+    places: Vec<BlockPlace>,
     /// Places of the blocks of each constraint: of its ends, and of each end with it.
-    ties: Vec<[Place; 3]>,
+    ties: Vec<[BlockPlace; 3]>,
     /// Identifier of the pattern of the couplings.
     couplings: u64,
     /// Prices of a factorisation and of a solve, in evaluations of forces spring by spring.
@@ -165,7 +165,7 @@ pub(super) struct Direct {
     pattern: Pattern,
     factor: Factor<3, 4>,
     /// Place of the block of each coupling in the matrix.
-    places: Vec<Place>,
+    places: Vec<BlockPlace>,
     /// Identifier of the pattern of the couplings.
     couplings: u64,
     /// Price of a factorisation, in evaluations of forces spring by spring.
@@ -221,7 +221,7 @@ pub(super) fn fill(
     tangent: &Tangent,
     pattern: &Pattern,
     factor: &mut Factor<3, 4>,
-    places: &[Place],
+    places: &[BlockPlace],
 ) {
     factor.clear();
     let masses = tangent.masses();

@@ -18,7 +18,7 @@ use super::balance::Balance;
 use super::power::End;
 use super::reach::{Reach, STEP_END_TOLERANCE, begin_of, next_change};
 use super::state::RunState;
-use super::step::{Failure, Pipeline};
+use super::step::{Pipeline, StepFailure};
 use super::stepper::Stepper;
 use super::watch::Watched;
 use crate::control::Control;
@@ -119,10 +119,10 @@ impl Driver {
     ///
     /// # Errors
     /// The run has blown up.
-    pub fn conclude(&self, model: &Model, state: &RunState) -> Result<(), Failure> {
+    pub fn conclude(&self, model: &Model, state: &RunState) -> Result<(), StepFailure> {
         let (watch, end) = (&self.pipeline.watch, last_end(&self.within, state));
         match watch.balance_at(model, state.balance, end).1 {
-            Some(cause) => Err(Failure::BlowUp { cause, time: end.t }),
+            Some(cause) => Err(StepFailure::BlowUp { cause, time: end.t }),
             None => Ok(()),
         }
     }
@@ -137,7 +137,7 @@ impl Driver {
         model: &mut Model,
         state: &mut RunState,
         count: u64,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), StepFailure> {
         among_threads(model.particles(), || {
             for _ in 0..count {
                 if !self.arrive(model, state) {
@@ -159,7 +159,7 @@ impl Driver {
         model: &mut Model,
         state: &mut RunState,
         (time, count): (f64, u64),
-    ) -> Result<bool, Failure> {
+    ) -> Result<bool, StepFailure> {
         let particles = model.particles();
         among_threads(particles, || self.advance_here(model, state, (time, count)))
     }
@@ -169,7 +169,7 @@ impl Driver {
         model: &mut Model,
         state: &mut RunState,
         (time, count): (f64, u64),
-    ) -> Result<bool, Failure> {
+    ) -> Result<bool, StepFailure> {
         for _ in 0..=count {
             let step = self.pipeline.stepper.step_size(state.control);
             // Where nothing accelerates, an adaptive method takes steps far beyond the time.
@@ -218,7 +218,7 @@ impl Driver {
         &mut self,
         model: &mut Model,
         state: &mut RunState,
-    ) -> Result<[f64; 2], Failure> {
+    ) -> Result<[f64; 2], StepFailure> {
         let begin = state.time();
         if let Some(end) = self.within.until().filter(|end| begin < *end) {
             return Ok([begin, end]);

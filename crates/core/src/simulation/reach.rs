@@ -13,14 +13,14 @@ pub(super) const STEP_END_TOLERANCE: f64 = 1e-6;
 
 /// Part of a run that one step covers: its length (s), and the time at its end (s).
 #[derive(Clone, Copy)]
-pub(super) struct Part {
+pub(super) struct StepPart {
     pub h: f64,
     pub end: f64,
     /// Whether it ends at an event, after which the motion is no longer smooth.
     pub ends_at_event: bool,
 }
 
-impl Part {
+impl StepPart {
     /// Creates a part of h (s) from time t (s), which ends at an event.
     pub fn of(t: f64, h: f64) -> Self {
         Self { h, end: t + h, ends_at_event: true }
@@ -147,9 +147,9 @@ impl Reach {
     }
 
     /// Returns the part that a step of h (s) from t covers.
-    pub fn part(&self, t: f64, h: f64) -> Part {
+    pub fn part(&self, t: f64, h: f64) -> StepPart {
         let until = self.until.filter(|_| h == self.longest);
-        Part { h, end: until.unwrap_or(t + h), ends_at_event: until.is_some() }
+        StepPart { h, end: until.unwrap_or(t + h), ends_at_event: until.is_some() }
     }
 }
 

@@ -146,12 +146,12 @@ impl Slide {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rests {
     now: Vec<Rest>,
-    scratch: Scratch,
+    scratch: RestScratch,
 }
 
 /// Scratch of the search for where a contact ceases.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Scratch {
+pub(super) struct RestScratch {
     /// Trial state.
     state: Vec<f64>,
     /// Its derivative without reactions.
@@ -182,12 +182,15 @@ impl Rests {
         let most = network.solids().len() * network.particles();
         Self {
             now: Vec::with_capacity(most),
-            scratch: Scratch { state: vec![0.0; network.dim()], free: vec![0.0; network.dim()] },
+            scratch: RestScratch {
+                state: vec![0.0; network.dim()],
+                free: vec![0.0; network.dim()],
+            },
         }
     }
 
     /// Returns the particles that rest, and scratch.
-    pub fn split(&mut self) -> (&[Rest], &mut Scratch) {
+    pub fn split(&mut self) -> (&[Rest], &mut RestScratch) {
         (&self.now, &mut self.scratch)
     }
 
@@ -307,7 +310,7 @@ impl<'a> Resting<'a> {
 /// zero.
 pub(super) fn first_end(
     network: &Network,
-    (rests, scratch): (&[Rest], &mut Scratch),
+    (rests, scratch): (&[Rest], &mut RestScratch),
     (t, h, none): (f64, f64, f64),
     before: f64,
     state: &mut Vec<f64>,
@@ -316,7 +319,7 @@ pub(super) fn first_end(
     if rests.is_empty() {
         return None;
     }
-    let Scratch { state: found, free } = scratch;
+    let RestScratch { state: found, free } = scratch;
     found.resize(network.dim(), 0.0);
     let mut margin = |share: f64, found: &mut [f64]| {
         state_at(share, found);

@@ -6,7 +6,7 @@ use super::driver::Driver;
 use super::pins::strayed;
 use super::reach::STEP_END_TOLERANCE;
 use super::state::RunState;
-use super::step::{Failure, Pipeline};
+use super::step::{Pipeline, StepFailure};
 use super::stepper::Stepper;
 use crate::contact::{Guarded, Statistics};
 use crate::control::Control;
@@ -369,12 +369,12 @@ impl Simulation {
 
     /// Goes back to the last sound state. A run that has blown up ends there; after another error,
     /// such as that of a callback, it may go on.
-    fn fail(&mut self, failure: Failure) -> Error {
+    fn fail(&mut self, failure: StepFailure) -> Error {
         let own = self.model.system().take_failure();
-        let failure = own.map_or(failure, Failure::Error);
+        let failure = own.map_or(failure, StepFailure::Error);
         let (cause, time) = match failure {
-            Failure::BlowUp { cause, time } => (cause, time),
-            Failure::Error(error) => return self.go_back().err().unwrap_or(error),
+            StepFailure::BlowUp { cause, time } => (cause, time),
+            StepFailure::Error(error) => return self.go_back().err().unwrap_or(error),
         };
         let mut blow_up = self.state.blow_up(cause, time);
         if let Err(error) = self.go_back() {

@@ -17,7 +17,7 @@ use super::locator::Locator;
 use super::phases::{Phases, Settled};
 use super::power::End;
 use super::reach::{
-    MIN_RETRY_SHARE, MIN_RETRY_STEP, Part, Reach, STEP_END_TOLERANCE, begin_of, limit_next,
+    MIN_RETRY_SHARE, MIN_RETRY_STEP, Reach, STEP_END_TOLERANCE, StepPart, begin_of, limit_next,
     share_of_bulge, share_of_retry,
 };
 use super::state::RunState;
@@ -84,7 +84,7 @@ pub(super) struct Pipeline {
     pub phases: Phases,
     pub locator: Locator,
     pub watch: Watch,
-    pub bounds: Bounds,
+    pub bounds: SceneBounds,
     pub(super) limits: StepLimits,
 }
 
@@ -97,7 +97,7 @@ impl Pipeline {
             phases: Phases::new(scene.model.system().dim()),
             locator: Locator::new(&scene.model),
             watch: Watch::new(radius, scene.limits),
-            bounds: Bounds { middle, radius },
+            bounds: SceneBounds { middle, radius },
             limits: scene.limits,
         }
     }
@@ -106,7 +106,7 @@ impl Pipeline {
     ///
     /// # Errors
     /// The run blew up in the step, or the step failed.
-    pub fn step(&mut self, model: &mut Model, state: &mut RunState) -> Result<(), Failure> {
+    pub fn step(&mut self, model: &mut Model, state: &mut RunState) -> Result<(), StepFailure> {
         let whole = state.control.step();
         let target = whole.map(|h| state.since + (state.taken + 1) as f64 * h);
         let sliver = state.sliver();
@@ -130,7 +130,7 @@ impl Pipeline {
             let span = (begin, target.filter(|_| in_parts));
             let taken = self.integrate_and_settle(model, state, span, splits)?;
             let (cause, part) = match taken {
-                Err(cause) => (Some(cause), Part::of(begin, whole.unwrap_or(0.0))),
+                Err(cause) => (Some(cause), StepPart::of(begin, whole.unwrap_or(0.0))),
                 Ok((mut part, settled)) => {
                     if !in_parts {
                         // Where the next step begins: t + h may differ in the last place.
@@ -148,7 +148,7 @@ impl Pipeline {
             state.steps += u64::from(is_last);
             if let Some(cause) = cause {
                 let time = part.end;
-                return Err(Failure::BlowUp { cause, time });
+                return Err(StepFailure::BlowUp { cause, time });
             }
             if whole.is_none() {
                 state.set_time(part.end);
@@ -174,7 +174,7 @@ impl Pipeline {
         state: &mut RunState,
         (t, target): (f64, Option<f64>),
         [splits, divides]: [bool; 2],
-    ) -> Result<Result<(Part, Settled), Cause>, Error> {
+    ) -> Result<Result<(StepPart, Settled), Cause>, Error> {
         let flying = self.limits_of_flight(model, &state.y);
         let (stepper, limits) = (&mut self.stepper, self.limits);
         let depths = Depths::new(self.bounds.radius, limits, state.control);
@@ -228,7 +228,7 @@ impl Pipeline {
         model: &Model,
         state: &mut RunState,
         plan: StepPlan,
-    ) -> Result<(Part, Settled), Setback> {
+    ) -> Result<(StepPart, Settled), Setback> {
         let StepPlan { t, depths, .. } = plan;
         self.phases.begin(model, &state.y, plan.locates);
         let mut part = self.integrate(model, state, plan)?;
@@ -290,7 +290,7 @@ impl Pipeline {
         model: &Model,
         state: &mut RunState,
         StepPlan { t, reach, .. }: StepPlan,
-    ) -> Result<Part, Setback> {
+    ) -> Result<StepPart, Setback> {
         let resting = self.locator.view(model);
         let system = resting.as_ref().map_or(model.system(), |view| view);
         let control = match state.control {
@@ -323,8 +323,8 @@ impl Pipeline {
         model: &Model,
         state: &mut RunState,
         StepPlan { t, depths, .. }: StepPlan,
-        whole: Part,
-    ) -> Result<Part, Setback> {
+        whole: StepPart,
+    ) -> Result<StepPart, Setback> {
         let (stepper, y0, h) = (&mut self.stepper, self.phases.y0(), whole.h);
         let event = self.locator.first_event(model, state, stepper, y0, Interval { t, h }, depths);
         let Some(Event { share, kind }) = event else {
@@ -335,7 +335,7 @@ impl Pipeline {
             let again = h > MIN_RETRY_STEP && self.stepper.is_adaptive();
             return if again { Err(Setback::Again { h, share }) } else { Ok(whole) };
         }
-        let part = Part::of(t, share * h);
+        let part = StepPart::of(t, share * h);
         state.y.copy_from_slice(self.locator.state());
         if let Stepper::Adaptive(adaptive) = &mut self.stepper
             && model.network().is_some_and(has_ropes)
@@ -397,14 +397,14 @@ fn may_rebound(model: &Model) -> bool {
 }
 
 /// Reason why a run cannot continue.
-pub(super) enum Failure {
+pub(super) enum StepFailure {
     /// Blow-up by a cause, at a time (s).
     BlowUp { cause: Cause, time: f64 },
     /// Error that is no blow-up.
     Error(Error),
 }
 
-impl From<Error> for Failure {
+impl From<Error> for StepFailure {
     fn from(error: Error) -> Self {
         Self::Error(error)
     }
@@ -438,13 +438,13 @@ const BLOCK_LENGTH: usize = 64;
 
 /// Bounds of a scene as it begins.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds {
+pub(super) struct SceneBounds {
     pub middle: Vector3<f64>,
     /// Distance of the farthest particle from the middle (m).
     pub radius: f64,
 }
 
-impl Bounds {
+impl SceneBounds {
     /// Returns whether all particles of y are close enough to the middle for a state to go back to
     /// after a blow-up.
     pub fn hold_closely(&self, model: &Model, y: &[f64]) -> bool {

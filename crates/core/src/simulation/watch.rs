@@ -200,7 +200,7 @@ impl Watch {
         cause
     }
 
-    /// Records the end of a step, with its contacts, and what `Bounds` has found. Returns the cause
+    /// Records the end of a step, with its contacts, and what `SceneBounds` has found. Returns the cause
     /// of a blow-up, if there is one: a particle that is far away because it fell or was thrown has
     /// gained no energy, and is none.
     pub fn end_step(

@@ -281,14 +281,14 @@ const SAME: f64 = 1e-3;
 
 /// Jacobian of a system, without the particles on rigid bodies.
 #[derive(Clone)]
-pub(super) struct Jacobian {
+pub(super) struct StateJacobian {
     matrix: DMatrix<f64>,
     /// Indices of its columns in the state, and the length of the state.
     unknowns: Vec<usize>,
     length: usize,
 }
 
-impl Jacobian {
+impl StateJacobian {
     /// Creates the Jacobian at the state y at time t (s): the system's own, or central differences.
     /// `None` if the state is too long, the system has a mass matrix, or the Jacobian is not
     /// finite.

@@ -2,7 +2,7 @@
 //! largest one with which a small disturbance does not grow, as runs show it.
 
 use super::limit::{GROWTH, Limit, largest_step};
-use super::linearised::{AtRest, Jacobian};
+use super::linearised::{AtRest, StateJacobian};
 use super::mode::{Mixing, Mode, Observation, sort};
 use super::own_rest;
 use super::own_rest::own_rest;
@@ -84,7 +84,7 @@ enum RestShapes {
     /// Matrices of a scene in which damping mixes shapes.
     Mixed(Pencil),
     /// Jacobian of a scene with rigid bodies.
-    Whole(Jacobian),
+    Whole(StateJacobian),
 }
 
 impl RestState {
@@ -92,7 +92,7 @@ impl RestState {
     /// has rigid bodies and is too large.
     fn new(scene: Scene, network: &Network) -> Option<Self> {
         if !network.bodies().is_empty() {
-            let jacobian = Jacobian::of(network, 0.0, &scene.state)?;
+            let jacobian = StateJacobian::of(network, 0.0, &scene.state)?;
             let mut modes = jacobian.modes(network);
             sort(&mut modes);
             return Some(Self { scene, modes, shapes: RestShapes::Whole(jacobian) });

@@ -9,7 +9,7 @@
 use nalgebra::{Complex, DMatrix, SymmetricEigen};
 
 use super::eigenvalues::{MAX_ITERATIONS, PRECISIONS, eigenvalues, kernel};
-use super::linearised::{Jacobian, MAX_DENSE_LENGTH};
+use super::linearised::{MAX_DENSE_LENGTH, StateJacobian};
 use super::mode::{MIN_MIXING, Mixing, Mode, Normalised, dot, normalise, sort};
 use crate::system::{Linearized, Mechanics, ParticleSystem, kick_reads_velocity};
 
@@ -48,7 +48,7 @@ pub fn spectrum(system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Vec<Mode> {
             modes.extend(of_constraints(mechanics));
             modes
         }
-        None => Jacobian::of(system, t, y).map_or(vec![], |jacobian| jacobian.modes(system)),
+        None => StateJacobian::of(system, t, y).map_or(vec![], |jacobian| jacobian.modes(system)),
     };
     sort(&mut modes);
     modes

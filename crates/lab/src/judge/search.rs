@@ -6,7 +6,7 @@ use a3_core::integrators::METHODS;
 use super::constant::MISTAKES;
 use super::grid::{MIN_AT_STEPS, Pace, paces};
 use super::scheme::{SCHEMES, Scheme};
-use super::trial::{Compared, Judged, Start, Trial, Way};
+use super::trial::{ComparedRows, Judged, Start, Trial, Way};
 
 /// Least ratio of the distance moved to that at which rows agree in single precision.
 const MIN_CLEAR: f64 = 100.0;
@@ -35,7 +35,7 @@ pub struct Agreement {
     pub trial: Trial,
     /// Step (s).
     pub step: f64,
-    pub compared: Compared,
+    pub compared: ComparedRows,
     /// Last time (s) at which it agrees, if it does not until the end.
     pub until: Option<f64>,
     /// Whether it agrees with the program in single precision.
@@ -301,7 +301,7 @@ impl Search<'_> {
                 };
                 let compared = self.judged.compare(trial, &|_, _| least);
                 let is_better =
-                    |it: &Compared| it.rows == self.judged.rows.len() && it.distance < least;
+                    |it: &ComparedRows| it.rows == self.judged.rows.len() && it.distance < least;
                 if let Some(compared) = compared.filter(is_better) {
                     least = compared.distance;
                     nearest = Some(Agreement {

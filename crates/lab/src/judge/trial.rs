@@ -131,7 +131,7 @@ pub struct Trial {
 
 /// Result of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Compared {
+pub struct ComparedRows {
     /// Number of rows up to the first that differs by more than its bound.
     pub rows: usize,
     /// Number of these rows that are at the end of a step.
@@ -393,9 +393,9 @@ impl<'a> Judged<'a> {
 
     /// Compares a trial with the rows until a row differs by more than its bound. `None` if the
     /// trial is not possible.
-    pub fn compare(&self, trial: Trial, bound: Bound) -> Option<Compared> {
+    pub fn compare(&self, trial: Trial, bound: Bound) -> Option<ComparedRows> {
         let start = self.start(trial);
-        let mut compared = Compared {
+        let mut compared = ComparedRows {
             rows: 0,
             at_steps: 0,
             distance: 0.0,

@@ -14,8 +14,8 @@ mod votes;
 
 use super::check::meetings;
 use super::layer::ContactLayer;
+use points::EdgeHit;
 pub(crate) use points::Freedom;
-use points::Hit;
 use points::Points;
 use skeleton::Skeleton;
 use votes::Pieces;
@@ -50,7 +50,7 @@ pub(crate) fn untangle(layer: &ContactLayer, freedom: &Freedom, t: f64, x: &mut 
             (fewest, since) = (count, round);
         }
         let hits: Vec<_> =
-            crossings.iter().map(|crossing| Hit::new(&skeleton, *crossing, &all.at)).collect();
+            crossings.iter().map(|crossing| EdgeHit::new(&skeleton, *crossing, &all.at)).collect();
         let pieces = Pieces::cut(&skeleton, &hits, &all.at);
         let votes = Votes::count(&skeleton, &pieces, &hits);
         let shortens = (round - since) / PATIENCE % 2 == 1;

@@ -205,7 +205,7 @@ const REACH: f64 = 0.25;
 const LEAST: f64 = 0.5;
 
 /// An edge that crosses a triangle.
-pub(super) struct Hit {
+pub(super) struct EdgeHit {
     /// Numbers of the edge and of the triangle.
     pub edge: usize,
     pub triangle: usize,
@@ -223,7 +223,7 @@ pub(super) struct Hit {
     pub most: f64,
 }
 
-impl Hit {
+impl EdgeHit {
     pub fn new(skeleton: &Skeleton, crossing: Crossing, at: &[Vector3<f64>]) -> Self {
         let Crossing { edge, triangle } = crossing;
         let (ends, corners) = (skeleton.edges[edge], skeleton.triangles[triangle]);
@@ -288,7 +288,11 @@ const PARALLEL_SINE: f64 = 1e-9;
 
 /// Returns the displacement (m) of the edge relative to the triangle that makes the curve of their
 /// surfaces shorter. An edge without triangles leaves by its shorter end.
-pub(super) fn step(skeleton: &Skeleton, hit: &Hit, at: &[Vector3<f64>]) -> Option<Vector3<f64>> {
+pub(super) fn step(
+    skeleton: &Skeleton,
+    hit: &EdgeHit,
+    at: &[Vector3<f64>],
+) -> Option<Vector3<f64>> {
     let ends = skeleton.edges[hit.edge];
     let triangles = skeleton.triangles_at(hit.edge);
     if triangles.is_empty() {

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BinaryHeap};
 
 use nalgebra::Vector3;
 
-use super::points::Hit;
+use super::points::EdgeHit;
 use super::skeleton::Skeleton;
 use crate::sets::Sets;
 
@@ -54,11 +54,11 @@ pub(super) struct Votes {
 }
 
 impl Votes {
-    pub fn count(skeleton: &Skeleton, pieces: &Pieces, hits: &[Hit]) -> Self {
+    pub fn count(skeleton: &Skeleton, pieces: &Pieces, hits: &[EdgeHit]) -> Self {
         let curves = curves(skeleton, hits);
         let rims = rims(skeleton, pieces, hits, &curves);
         let mut sums = BTreeMap::<_, VoteSum>::new();
-        let vote = |(hit, curve): (&Hit, &u32)| -> Option<(Vote, f64)> {
+        let vote = |(hit, curve): (&EdgeHit, &u32)| -> Option<(Vote, f64)> {
             let [a, b] = skeleton.edges[hit.edge].map(|i| pieces.of[i as usize]);
             if a != b {
                 let [first, second] = [a, b].map(|piece| pieces.sizes[piece as usize]);
@@ -138,7 +138,7 @@ fn decided(sums: &BTreeMap<(u32, Wrong), VoteSum>) -> BTreeMap<u32, Wrong> {
 
 /// Returns the curve of each crossing, by its first crossing. A curve runs from a crossing of an
 /// edge through a triangle at that edge to the next crossing of the same two triangles.
-fn curves(skeleton: &Skeleton, hits: &[Hit]) -> Vec<u32> {
+fn curves(skeleton: &Skeleton, hits: &[EdgeHit]) -> Vec<u32> {
     let mut sets = Sets::new(hits.len());
     let mut firsts = BTreeMap::new();
     for (k, hit) in hits.iter().enumerate() {
@@ -154,7 +154,7 @@ fn curves(skeleton: &Skeleton, hits: &[Hit]) -> Vec<u32> {
 /// Key of the two rims at a curve: the curve, and the parts of the edge and of the triangle.
 type RimKey = (u32, u32, u32);
 
-fn rim(skeleton: &Skeleton, hit: &Hit, curve: u32) -> RimKey {
+fn rim(skeleton: &Skeleton, hit: &EdgeHit, curve: u32) -> RimKey {
     let part = |i: u32| skeleton.parts[i as usize];
     let (edge, triangle) = (skeleton.edges[hit.edge], skeleton.triangles[hit.triangle]);
     (curve, part(edge[0]), part(triangle[0]))
@@ -165,7 +165,7 @@ fn rim(skeleton: &Skeleton, hit: &Hit, curve: u32) -> RimKey {
 fn rims(
     skeleton: &Skeleton,
     pieces: &Pieces,
-    hits: &[Hit],
+    hits: &[EdgeHit],
     curves: &[u32],
 ) -> BTreeMap<RimKey, [f64; 2]> {
     let mut sums = BTreeMap::<_, ([f64; 2], f64)>::new();
@@ -194,7 +194,7 @@ pub(super) struct Pieces {
 
 impl Pieces {
     /// Cuts surfaces with vertices at these places (m).
-    pub fn cut(skeleton: &Skeleton, hits: &[Hit], at: &[Vector3<f64>]) -> Self {
+    pub fn cut(skeleton: &Skeleton, hits: &[EdgeHit], at: &[Vector3<f64>]) -> Self {
         let mut cuts = BTreeMap::new();
         for hit in hits {
             let [first, last] = cuts.entry(hit.edge).or_insert([1.0_f64, 0.0_f64]);

@@ -21,7 +21,7 @@ use crate::spring::Spring;
 use crate::threads::{Columns, split_off, threads};
 use crate::vectors::Arch;
 use laws::Quantity;
-use order::Window;
+use order::TileWindow;
 use order::{Order, TILE};
 
 /// Least number of springs for which packing pays.
@@ -37,7 +37,7 @@ pub(crate) struct Packed {
     order: Order,
     is_damped: bool,
     /// A window for each band of particles.
-    windows: Scratch<Vec<Window>>,
+    windows: Scratch<Vec<TileWindow>>,
 }
 
 /// A quantity, and the n x 3 matrices that it depends on: x, v, dx and dv, or some of these.
@@ -91,7 +91,7 @@ impl Packed {
     fn add_in(&self, count: usize, task: Task, f: &mut [f64]) {
         self.windows.lend(|windows| {
             if windows.len() < count {
-                windows.resize_with(count, Window::default);
+                windows.resize_with(count, TileWindow::default);
             }
             self.fork(&mut windows[..count], [0, count], task, columns_mut(f), 0);
         });
@@ -101,7 +101,7 @@ impl Packed {
     /// come before these, of `count` in all.
     fn fork(
         &self,
-        windows: &mut [Window],
+        windows: &mut [TileWindow],
         [before, count]: [usize; 2],
         task: Task,
         mut f: Columns<3>,
@@ -124,7 +124,7 @@ impl Packed {
     /// Adds the sums on one band of particles, panel by panel.
     fn sum(
         &self,
-        window: &mut Window,
+        window: &mut TileWindow,
         [band, count]: [usize; 2],
         task: Task,
         mut f: Columns<3>,
@@ -159,13 +159,13 @@ impl Packed {
 
     fn sum_of_runs<'a>(
         &'a self,
-        window: &'a mut Window,
+        window: &'a mut TileWindow,
         which: Range<usize>,
         offset: usize,
         quantity: Quantity,
-    ) -> order::Sum<'a> {
+    ) -> order::OrderedSum<'a> {
         let [fields @ .., f] = &mut window.columns;
-        order::Sum {
+        order::OrderedSum {
             runs: &self.order.runs,
             which,
             stride: self.order.window(),
@@ -178,7 +178,7 @@ impl Packed {
 
     fn sum_of_blocks<'a>(
         &'a self,
-        window: &'a mut Window,
+        window: &'a mut TileWindow,
         which: Range<usize>,
         offset: usize,
         quantity: Quantity,

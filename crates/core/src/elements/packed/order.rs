@@ -50,7 +50,7 @@ pub(super) struct Order {
 }
 
 /// A band of particles with all springs that reach it.
-pub(super) struct Stretch {
+pub(super) struct TileStretch {
     /// Particles of the band.
     pub own: Range<usize>,
     /// Tiles whose springs reach them.
@@ -136,10 +136,13 @@ impl Order {
     }
 
     /// Returns band number k of `bands`.
-    pub fn stretch(&self, k: usize, bands: usize) -> Stretch {
+    pub fn stretch(&self, k: usize, bands: usize) -> TileStretch {
         let n = self.particles.len();
         let own = n * k / bands..n * (k + 1) / bands;
-        Stretch { tiles: own.start.saturating_sub(self.reach) / TILE..own.end.div_ceil(TILE), own }
+        TileStretch {
+            tiles: own.start.saturating_sub(self.reach) / TILE..own.end.div_ceil(TILE),
+            own,
+        }
     }
 }
 
@@ -197,7 +200,7 @@ impl Runs {
 
 /// Task that adds the forces of runs at x and v to f, or their differential for dx and dv. All have
 /// three columns, `stride` numbers apart.
-pub(super) struct Sum<'a> {
+pub(super) struct OrderedSum<'a> {
     pub runs: &'a Runs,
     pub which: Range<usize>,
     pub stride: usize,
@@ -207,7 +210,7 @@ pub(super) struct Sum<'a> {
     pub is_damped: bool,
 }
 
-impl WithSimd for Sum<'_> {
+impl WithSimd for OrderedSum<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -252,7 +255,7 @@ fn give(g: &[Aligned; 3], [i, j]: [u32; 2], stride: usize, f: &mut [f64]) {
     }
 }
 
-impl Kernels for Sum<'_> {
+impl Kernels for OrderedSum<'_> {
     #[inline(always)]
     fn forces<const DAMPED: bool>(self) {
         let (runs, stride) = (self.runs, self.stride);
@@ -320,7 +323,7 @@ impl Kernels for Sum<'_> {
 
 /// x, v, dx and dv of the particles in the window, and the sums on them.
 #[derive(Debug, Default)]
-pub(super) struct Window {
+pub(super) struct TileWindow {
     /// For runs, in three columns.
     pub columns: [Columns; 5],
     /// For blocks, three numbers side by side.
@@ -329,7 +332,7 @@ pub(super) struct Window {
     stays: usize,
 }
 
-impl Window {
+impl TileWindow {
     /// Empties the window.
     pub fn clear(&mut self) {
         self.stays = 0;

@@ -151,7 +151,7 @@ fn blocks_are_the_sum_of_springs_one_by_one_and_bands_change_no_bit() {
             }
             let fields = all.each_ref().map(|a| Some(a.as_slice()));
             let [by_vectors, one_by_one] = [true, false].map(|has_vectors| {
-                let (mut window, [runs, blocks]) = (Window::default(), packed.order.of_tile(0));
+                let (mut window, [runs, blocks]) = (TileWindow::default(), packed.order.of_tile(0));
                 window.take(&packed.order, 0, &fields);
                 assert_eq!(runs.is_empty(), dense == 0, "{what}");
                 if !runs.is_empty() {

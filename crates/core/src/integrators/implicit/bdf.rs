@@ -16,7 +16,7 @@ use super::super::sweep::{add_scaled, scaled_sum};
 use super::super::trial::{LastStep, Trial};
 use super::consistent::Consistent;
 use super::jacobian::Jacobian;
-use super::kept::{KeptSolver, Tangent};
+use super::kept::{KeptSolver, KeptTangent};
 use super::newton::MAX_ORDER;
 use super::{newton, tr_bdf2};
 use crate::control::Control;
@@ -323,7 +323,7 @@ impl Trial for Bdf {
             // This tangent was formed, and counted as work, before the checkpoint.
             let (_, of_use) = self.solver.form(system);
             if !of_use {
-                self.solver.tangent = Tangent::NONE;
+                self.solver.tangent = KeptTangent::NONE;
             }
         }
         let equations = [&*self.base, &*self.predicted];
@@ -366,7 +366,7 @@ impl Trial for Bdf {
 
     fn last(&self) -> LastStep {
         let Orders { last, next, equal } = self.orders;
-        let Tangent { t, a, formed, clamped, rate } = self.solver.tangent;
+        let KeptTangent { t, a, formed, clamped, rate } = self.solver.tangent;
         let mut step = self.step.clone();
         step.k[DIFFERENCES].copy_from_slice(&self.solver.at);
         step.counts = vec![last, next, equal, usize::from(clamped)];
@@ -392,7 +392,7 @@ impl Trial for Bdf {
         self.first = false;
         self.orders = Orders { last, next, equal };
         self.solver.at.copy_from_slice(&step.k[DIFFERENCES]);
-        self.solver.tangent = Tangent { t, a, formed, clamped: clamped != 0, rate };
+        self.solver.tangent = KeptTangent { t, a, formed, clamped: clamped != 0, rate };
         self.resumed = true;
         Ok(())
     }

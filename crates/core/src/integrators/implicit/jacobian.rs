@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use nalgebra::ComplexField;
 
-use super::lu::{Lu, Matrix};
+use super::lu::{Lu, SystemMatrix};
 use super::newton::dot;
 use super::pattern::Pattern;
 use crate::error::Error;
@@ -68,7 +68,7 @@ pub(super) struct Jacobian {
     /// Cost of an evaluation of f, in multiplications within rows; infinite for rigid bodies, whose
     /// matrices are small.
     evaluation: f64,
-    pub matrix: Matrix,
+    pub matrix: SystemMatrix,
     /// Entries of the mass matrix M, column by column; none if it is 1.
     pub mass: Vec<(u32, u32, f64)>,
     /// Whether differences are central: for bodies and constraints, of whose equations implicit
@@ -128,7 +128,7 @@ impl Jacobian {
     pub fn check(&self) -> Result<(), Error> {
         let numbers = self.unknowns.len();
         let is_small = numbers <= MAX_DENSE || self.searches;
-        if is_small || matches!(self.matrix, Matrix::Sparse(..)) {
+        if is_small || matches!(self.matrix, SystemMatrix::Sparse(..)) {
             return Ok(());
         }
         Err(Error::Unsupported {
@@ -141,8 +141,8 @@ impl Jacobian {
     /// the rows of each column after their number.
     pub fn pattern(&self) -> Vec<usize> {
         match &self.matrix {
-            Matrix::Full(_) => vec![usize::from(!self.searches)],
-            Matrix::Sparse(pattern, _) => {
+            SystemMatrix::Full(_) => vec![usize::from(!self.searches)],
+            SystemMatrix::Sparse(pattern, _) => {
                 let columns = (0..self.unknowns.len()).map(|j| &pattern.rows[pattern.column(j)]);
                 let lists = columns.flat_map(|rows| {
                     let rows = rows.iter().map(|row| *row as usize);
@@ -159,7 +159,7 @@ impl Jacobian {
             return;
         }
         self.searches = self.unknowns.len() >= MANY && !self.is_central;
-        if matches!(self.matrix, Matrix::Sparse(..)) {
+        if matches!(self.matrix, SystemMatrix::Sparse(..)) {
             self.matrix = full(self.unknowns.len());
         }
     }
@@ -291,7 +291,7 @@ impl Jacobian {
         if let Some(work) = self.take_entries(system, t, y) {
             return work;
         }
-        if let Matrix::Full(matrix) = &mut self.matrix
+        if let SystemMatrix::Full(matrix) = &mut self.matrix
             && count == y.len()
             && count <= MAX_DENSE
             && system.jacobian(t, y, matrix)
@@ -327,7 +327,7 @@ impl Jacobian {
     /// Takes the entries at y of a sparse matrix that the system knows. Returns the cost; `None` if
     /// the system is small, or its matrix is not known or not sparse.
     fn take_entries(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> Option<Work> {
-        let is_dense = matches!(self.matrix, Matrix::Full(_)) && !self.searches
+        let is_dense = matches!(self.matrix, SystemMatrix::Full(_)) && !self.searches
             || self.unknowns.len() != y.len();
         self.entries.clear();
         if is_dense || !system.jacobian_entries(t, y, &mut self.entries) {
@@ -336,7 +336,7 @@ impl Jacobian {
         let count = self.unknowns.len();
         let entries = &self.entries;
         loop {
-            if let Matrix::Sparse(pattern, values) = &mut self.matrix {
+            if let SystemMatrix::Sparse(pattern, values) = &mut self.matrix {
                 values.fill(0.0);
                 let put = |(row, column, value): &(u32, u32, f64)| {
                     let places = pattern.column(*column as usize);
@@ -352,8 +352,8 @@ impl Jacobian {
             }
             // Entries that were 0 until now.
             let known = match &self.matrix {
-                Matrix::Sparse(pattern, _) => pattern.places(),
-                Matrix::Full(_) => vec![],
+                SystemMatrix::Sparse(pattern, _) => pattern.places(),
+                SystemMatrix::Full(_) => vec![],
             };
             let new = entries.iter().map(|(row, column, _)| (*row, *column));
             // The matrix of a step, M - a J, mostly has a diagonal also where J has none.
@@ -416,8 +416,8 @@ impl Jacobian {
             return (Work::of(count), false);
         }
         let known = match &*matrix {
-            Matrix::Sparse(known, _) => Some(known),
-            Matrix::Full(_) => None,
+            SystemMatrix::Sparse(known, _) => Some(known),
+            SystemMatrix::Full(_) => None,
         };
         let found = match known {
             Some(known) => found.and_then(|found| known.joined(&found, MOST)),
@@ -438,8 +438,8 @@ impl Jacobian {
         let Self { unknowns, units, matrix, is_central, at, f, changed, .. } = self;
         let count = unknowns.len();
         match matrix {
-            Matrix::Full(matrix) if matrix.len() < count * count => Work::default(),
-            Matrix::Full(matrix) => {
+            SystemMatrix::Full(matrix) if matrix.len() < count * count => Work::default(),
+            SystemMatrix::Full(matrix) => {
                 for (column, &j) in unknowns.iter().enumerate() {
                     let [_, mut step] = units[column];
                     at[j] = y[j] + step;
@@ -456,7 +456,7 @@ impl Jacobian {
                 }
                 Work::of(count as u64 * if *is_central { 2 } else { 1 })
             }
-            Matrix::Sparse(pattern, values) => {
+            SystemMatrix::Sparse(pattern, values) => {
                 for columns in &pattern.colours {
                     for k in columns {
                         at[unknowns[*k]] += units[*k][1];
@@ -478,7 +478,7 @@ impl Jacobian {
     /// Returns whether all entries of a sparse matrix are in its pattern, by changes of all numbers
     /// at y, where f is known; and the cost.
     fn is_met(&mut self, system: &dyn ParticleSystem, t: f64, y: &[f64]) -> (Work, bool) {
-        let Matrix::Sparse(pattern, values) = &self.matrix else {
+        let SystemMatrix::Sparse(pattern, values) = &self.matrix else {
             return (Work::default(), true);
         };
         let mut random = SplitMix(2);
@@ -522,14 +522,14 @@ fn pattern_of(order: usize, entries: impl Iterator<Item = (u32, u32)>) -> Option
 }
 
 /// Returns a matrix of zeros of a pattern, for sums with one that has these entries.
-fn sparse(pattern: Pattern, mass: &[(u32, u32, f64)]) -> Matrix {
+fn sparse(pattern: Pattern, mass: &[(u32, u32, f64)]) -> SystemMatrix {
     let pattern = pattern.summed_with(mass, MOST);
     let values = vec![0.0; pattern.rows.len()];
-    Matrix::Sparse(pattern, values)
+    SystemMatrix::Sparse(pattern, values)
 }
 
 /// Returns room for a full matrix of an order; none if it is too large.
-fn full(order: usize) -> Matrix {
+fn full(order: usize) -> SystemMatrix {
     let room = if order > MAX_DENSE { 0 } else { order * order };
-    Matrix::Full(vec![0.0; room])
+    SystemMatrix::Full(vec![0.0; room])
 }

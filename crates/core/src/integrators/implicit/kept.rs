@@ -22,7 +22,7 @@ const MAX_ITERATIONS: i32 = 4;
 const FORCING: f64 = 0.02;
 /// Kept tangent: where it was formed, and how fast the iterations converge with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Tangent {
+pub(super) struct KeptTangent {
     /// Time at which it was formed (s).
     pub t: f64,
     /// Factor a of the equations y = base + a f(t, y) (s); 0 before one is formed.
@@ -35,7 +35,7 @@ pub(super) struct Tangent {
     pub rate: f64,
 }
 
-impl Tangent {
+impl KeptTangent {
     /// No tangent.
     pub const NONE: Self = Self { t: 0.0, a: 0.0, formed: 0.0, clamped: false, rate: 1.0 };
 }
@@ -51,7 +51,7 @@ enum SolveFailure {
 /// Solver of implicit stages that keeps its tangent.
 pub(super) struct KeptSolver {
     stage: StageSolver,
-    pub tangent: Tangent,
+    pub tangent: KeptTangent,
     /// State at which the tangent was formed.
     pub at: Vec<f64>,
     /// Change of the state by an iteration.
@@ -62,7 +62,7 @@ impl KeptSolver {
     pub fn new(system: &dyn ParticleSystem) -> Self {
         Self {
             stage: StageSolver::new(system),
-            tangent: Tangent::NONE,
+            tangent: KeptTangent::NONE,
             at: vec![0.0; system.dim()],
             change: vec![0.0; system.dim()],
         }
@@ -94,7 +94,7 @@ impl KeptSolver {
 
     /// Forgets the tangent, because the system may have changed.
     pub fn forget(&mut self, system: &dyn ParticleSystem) {
-        self.tangent = Tangent::NONE;
+        self.tangent = KeptTangent::NONE;
         match (&mut self.stage, linearized(system)) {
             (StageSolver::Mechanical(stage), Some(linearized)) => stage.solver.renew(linearized),
             (StageSolver::Dense(stage), _) => stage.jacobian.forget(),
@@ -130,7 +130,7 @@ impl KeptSolver {
             let mut solved = Ok(());
             if fresh {
                 self.at.copy_from_slice(y);
-                self.tangent = Tangent { t, a, formed: a, clamped, rate: 1.0 };
+                self.tangent = KeptTangent { t, a, formed: a, clamped, rate: 1.0 };
                 let (cost, of_use) = self.form(system);
                 work += cost;
                 if !of_use {
@@ -150,7 +150,7 @@ impl KeptSolver {
                 Err(SolveFailure::Indefinite) if !self.tangent.clamped => clamped = true,
                 Err(SolveFailure::Diverges) if !fresh => (),
                 Err(_) => {
-                    self.tangent = Tangent::NONE;
+                    self.tangent = KeptTangent::NONE;
                     return (work, false);
                 }
             }
@@ -166,7 +166,7 @@ impl KeptSolver {
     /// Forms the tangent where it was formed before. Returns the cost, and whether it is positive
     /// definite.
     pub fn form(&mut self, system: &dyn ParticleSystem) -> (Work, bool) {
-        let Tangent { t, a, formed, clamped, .. } = self.tangent;
+        let KeptTangent { t, a, formed, clamped, .. } = self.tangent;
         match (&mut self.stage, linearized(system)) {
             (StageSolver::Mechanical(stage), Some(linearized)) => {
                 let (x, v) = self.at.split_at(self.at.len() / 2);

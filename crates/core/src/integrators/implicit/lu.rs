@@ -7,14 +7,14 @@ use super::sparse::Sparse;
 use crate::integrators::method::MAX_DENSE;
 
 /// Matrix J of real numbers.
-pub(super) enum Matrix {
+pub(super) enum SystemMatrix {
     /// All numbers, row by row.
     Full(Vec<f64>),
     /// The numbers at the entries of a pattern, column by column.
     Sparse(Pattern, Vec<f64>),
 }
 
-impl Matrix {
+impl SystemMatrix {
     /// Visits the row, the column and the value of each entry.
     pub fn visit(&self, mut visit: impl FnMut(usize, usize, f64)) {
         match self {
@@ -86,12 +86,12 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
         &mut self,
         (shift, mass): (T, &[(u32, u32, f64)]),
         scale: f64,
-        jacobian: &Matrix,
+        jacobian: &SystemMatrix,
     ) -> bool {
         let (n, parts) = (self.order, parts::<T>());
         let products = match (jacobian, &mut self.factors) {
-            (Matrix::Full(jacobian), _) if jacobian.len() < n * n => None,
-            (Matrix::Full(jacobian), LuFactors::Full(matrix, pivots)) => {
+            (SystemMatrix::Full(jacobian), _) if jacobian.len() < n * n => None,
+            (SystemMatrix::Full(jacobian), LuFactors::Full(matrix, pivots)) => {
                 matrix.resize(n * n, T::zero());
                 for (entry, slope) in matrix.iter_mut().zip(jacobian) {
                     *entry = T::zero() - T::from_real(scale * slope);
@@ -105,14 +105,14 @@ impl<T: ComplexField<RealField = f64> + Copy> Lu<T> {
                 }
                 eliminate(matrix, pivots)
             }
-            (Matrix::Sparse(pattern, values), LuFactors::Sparse(factors)) => {
+            (SystemMatrix::Sparse(pattern, values), LuFactors::Sparse(factors)) => {
                 factors.factorise((shift, mass), scale, (pattern, values))
             }
-            (Matrix::Full(_), factors) => {
+            (SystemMatrix::Full(_), factors) => {
                 *factors = LuFactors::Full(vec![], vec![0; n]);
                 return self.factorise((shift, mass), scale, jacobian);
             }
-            (Matrix::Sparse(..), factors) => {
+            (SystemMatrix::Sparse(..), factors) => {
                 *factors = LuFactors::Sparse(Box::new(Sparse::new(n)));
                 return self.factorise((shift, mass), scale, jacobian);
             }
@@ -225,7 +225,7 @@ mod tests {
         let shift = Complex::new(0.0, 1.5);
         let b: Vec<_> = (1..4).map(|k| Complex::new(f64::from(k), -0.5)).collect();
         let mut lu = Lu::new(3);
-        let matrix = |numbers: [f64; 9]| Matrix::Full(numbers.to_vec());
+        let matrix = |numbers: [f64; 9]| SystemMatrix::Full(numbers.to_vec());
         assert!(lu.factorise((shift, &[]), 2.0, &matrix(jacobian)));
         // Nine entries; two rows of three numbers and one of two below their pivots.
         assert_eq!(lu.cost(), 2.0 * (SEARCH * 9.0 + 2.0 * 8.0));
