@@ -200,9 +200,9 @@ impl Watch {
         cause
     }
 
-    /// Records the end of a step, with its contacts, and what `SceneBounds` has found. Returns the cause
-    /// of a blow-up, if there is one: a particle that is far away because it fell or was thrown has
-    /// gained no energy, and is none.
+    /// Records the end of a step, with its contacts, and what `SceneBounds` has found. Returns the
+    /// cause of a blow-up, if there is one: a particle that is far away because it fell or was
+    /// thrown has gained no energy, and is none.
     pub fn end_step(
         &mut self,
         model: &Model,
