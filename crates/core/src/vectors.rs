@@ -5,8 +5,8 @@ pub(crate) use pulp::Arch;
 #[cfg(all(target_arch = "wasm32", target_feature = "relaxed-simd"))]
 pub(crate) use relaxed::Arch;
 
-/// A build for relaxed SIMD, which no browser without it loads, leaves out the code for less: a
-/// tenth of a page.
+/// A build for relaxed SIMD, which no browser without it loads, leaves out the code for browsers
+/// without it: a tenth of the page.
 #[cfg(all(target_arch = "wasm32", target_feature = "relaxed-simd"))]
 mod relaxed {
     use pulp::wasm::RelaxedSimd;

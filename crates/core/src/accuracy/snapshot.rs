@@ -28,7 +28,7 @@ const ROUNDING: f64 = 1e-12;
 pub(super) struct Snapshot {
     /// Number of particles.
     particles: usize,
-    /// Number of these that are in walls, which have no errors.
+    /// Number of these particles that are pinned in walls: they have no errors.
     walls: usize,
     /// Positions (m): all x, all y, all z. Without particles, all numbers of the state.
     positions: Vec<f64>,

@@ -102,10 +102,11 @@ impl ContactPhase {
         impulses.add_forces(*h, f);
     }
 
-    /// Returns the sum of the magnitudes (N s) of the impulses on the particles that met something
-    /// in the last step, or of those by which forces f (N), n x 3, drive them, where these are
-    /// larger: an implicit method foresees how forces give way, so that a smaller impulse stops
-    /// what it lets move, though something holds all of the force.
+    /// Returns an upper bound of the impulses (N s) that held particles back in the last step: for
+    /// each particle that got an impulse, its magnitude or, if larger, the force f on it (N, n x 3)
+    /// times the step. An implicit method foresees how particles give way to a force, so that a
+    /// small impulse stops what is left of their motion, although an obstacle holds all of the
+    /// force.
     pub(crate) fn reaction(&self, f: &[f64]) -> f64 {
         let mut held = vec![0.0; f.len()];
         self.add_forces(&mut held);

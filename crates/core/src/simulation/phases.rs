@@ -181,9 +181,8 @@ impl Phases {
         f
     }
 
-    /// Returns the sum of the magnitudes of the impulses (N s) by which moving obstacles may have
-    /// worked in a step that ends with y at time t (s), beyond those that were applied; 0 if all
-    /// stand still.
+    /// Returns an upper bound of the impulses (N s) of moving obstacles in the last step, which
+    /// ended with y at time t (s); 0 if no obstacle moves.
     pub fn reaction(&self, network: &Network, t: f64, y: &[f64]) -> f64 {
         if network.obstacles().iter().all(Obstacle::is_still) {
             return 0.0;
@@ -259,10 +258,10 @@ impl Phases {
     }
 }
 
-/// Lets `meet` move what touches at y, the end of a step. That moves a particle or a body alone:
-/// those on which it then pulls by constraints are moved after it, in turns, until contact moves
-/// hardly anything any more; of all but the first of these, `meet` knows that. Returns the result
-/// of the first.
+/// Moves what touches in the state y at the end of a step, by `meet`. That moves a particle or a
+/// body alone: others that constraints join to it are moved after it. Both alternate until contact
+/// moves hardly anything any more. `meet` is told whether the step has impulses of an earlier turn;
+/// returns its result in the first one.
 fn in_turns<T, E>(
     network: &Network,
     y: &mut [f64],

@@ -28,8 +28,9 @@ const INTERVAL: f64 = 1.0 / 60.0;
 /// take too long.
 const MAX_PARTICLES_PER_STEP: usize = 200;
 
-/// Change of the total power between two evaluations, times the time between them, over the energy
-/// that moves, up to which the next ones may be farther apart: a tenth of a gain that is told.
+/// Share of the energy that moves up to which the total power counts as steady: its change between
+/// two evaluations, times the time between them, is less, and the next two may be farther apart. It
+/// is a tenth of the gain from which on users are warned.
 const STEADY_SHARE: f64 = 0.01;
 
 /// Least half of the interval of the difference quotient for the total power (s).
@@ -51,8 +52,8 @@ const ROUNDING: f64 = 1e-12;
 pub(super) struct End<'a> {
     /// Order of the method.
     pub order: u32,
-    /// Whether the step may be long beside those in which prescribed motion begins, as those of an
-    /// adaptive method are at rest. A fixed step feels what begins at its end.
+    /// Whether the method is adaptive. Its steps end before a prescribed motion begins, and may be
+    /// long; the forces at the end of a fixed step include that motion.
     pub is_adaptive: bool,
     /// Time (s).
     pub t: f64,
@@ -142,9 +143,9 @@ impl Power {
         self.is_fresh = false;
     }
 
-    /// Returns the work (J) since the last evaluation, up to this end of a step: whenever it is
-    /// needed `now`, at least once in an interval and, where it changes the energy that moves (J),
-    /// more often.
+    /// Returns the work (J) since the last evaluation, up to this end of a step, if another one is
+    /// due: when it is needed `now`, after an interval, or sooner if the power changes much beside
+    /// the energy that moves (J).
     pub fn work(&mut self, network: &Network, end: End, now: bool, moving: f64) -> f64 {
         let few = network.particles() <= MAX_PARTICLES_PER_STEP;
         let is_due = |t: f64, interval: f64| now || few || end.t - t >= interval;
@@ -467,8 +468,8 @@ impl TotalWork {
     }
 }
 
-/// Returns whether a prescribed velocity, or wind, may jump at the end of a step, so that the step
-/// ends before that.
+/// Returns whether a prescribed velocity, or the wind, may jump at the end of a step of an adaptive
+/// method, which ends just before the jump.
 fn may_jump(network: &Network, End { is_adaptive, t, .. }: End) -> bool {
     is_adaptive && next_known_time(network, t.next_down()) <= t
 }

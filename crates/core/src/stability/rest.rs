@@ -29,8 +29,8 @@ const SETTLING: [(f64, u32, bool); 5] = [
     (5.0, 400, false),
 ];
 
-/// Largest displacements of the particles in such a round, over the radius of the scene, of which
-/// the first is taken that lets no surfaces cross.
+/// Largest displacements of the particles in such a round, over the radius of the scene. They are
+/// tried in turn until no surfaces cross.
 const PUSHES: [f64; 3] = [1e-4, 1e-6, 1e-8];
 
 /// Time (s) in which gravity moves a scene by its radius, from which on the rounds have these
