@@ -31,8 +31,9 @@ pub struct Statistics {
     pub depth: f64,
     /// Share of the step after which that particle touched the obstacle, for uniform motion.
     pub touched: f64,
-    /// Estimated error of the displacements by contact on obstacles that are curved or turn (m):
-    /// it acts after the step, where the estimate of the method does not see it.
+    /// Estimated error of the displacements by contact on obstacles that are curved or turn, and by
+    /// what constraints pass on of it (m): contact acts after the step, where the estimate of the
+    /// method does not see it.
     pub missed: f64,
     /// Actions of the collision safeguard, if surfaces touch.
     pub guarded: Guarded,

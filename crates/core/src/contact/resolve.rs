@@ -145,7 +145,7 @@ impl ContactPhase {
             held: &mut self.held,
         };
         resolve_noting(obstacles, &masses, &step, y1, noted);
-        pass_on(noted, bodies.inverse_masses, y1);
+        pass_on(noted, bodies.inverse_masses, &step, y1);
         last.impulse += std::mem::take(impulse);
         struck.clear();
         self.rebounds.sort_unstable_by(f64::total_cmp);
@@ -218,7 +218,7 @@ impl ContactPhase {
                 noted.add_contact(i, change / inverse_masses[i]);
             }
         }
-        pass_on(noted, inverse_masses, y1);
+        pass_on(noted, inverse_masses, &Step { t, h, y0: &[] }, y1);
         self.struck.1 += statistics.impulse;
     }
 
@@ -323,20 +323,31 @@ fn resolve_noting(
     }
 }
 
-/// Applies the impacts of particles that constraints hold, with what these pass on, to y1.
-fn pass_on(noted: &mut Noted, inverse_masses: &[f64], y1: &mut [f64]) {
+/// Applies the impacts of particles that constraints hold, with what these pass on, to y1. If the
+/// beginning of the step is known, they pass a rebound on as they lie at its time, and a contact as
+/// they lie in the middle of the step: one that lasts for all of it is then of order 2. Notes the
+/// difference from the end of the step.
+fn pass_on(noted: &mut Noted, inverse_masses: &[f64], step: &Step, y1: &mut [f64]) {
     let (Some(joints), false) = (noted.joints, noted.held.is_empty()) else {
         return;
     };
     let n = inverse_masses.len();
     let held = std::mem::take(noted.held);
-    let joined = JoinedBodies { joints, y: y1 };
+    let state_in = |impact: &PointImpact| {
+        let left = if impact.left > 0.0 { impact.left / step.h } else { 0.5 };
+        let mut y = y1.to_vec();
+        for (x, begun) in y[..3 * n].iter_mut().zip(step.y0) {
+            *x += (begun - *x) * left;
+        }
+        y
+    };
     let mut blows: Vec<_> = (held.iter())
         .map(|impact| {
             let points = ([impact.particle as u32; 4], [1.0, 0.0, 0.0, 0.0]);
             let mut contact =
                 ContactPair::with_arms(points, impact.normal, inverse_masses, &[None, None]);
             let is_smooth = impact.least.friction == 0.0;
+            let joined = JoinedBodies { joints, y: &state_in(impact) };
             contact.join(joined, is_smooth, inverse_masses, &[]);
             let is_free = impact.least.speed > 0.0;
             Blow::new(contact, impact.least, is_free, impact.carried)
@@ -346,7 +357,7 @@ fn pass_on(noted: &mut Noted, inverse_masses: &[f64], y1: &mut [f64]) {
     for i in 0..n {
         before[i] = row(&y1[3 * n..], n, i);
     }
-    let mut ties = Tie::all(joined, &[], &before);
+    let mut ties = Tie::all(JoinedBodies { joints, y: y1 }, &[], &before);
     let mut changes = Field::still(n, 0);
     let moving = (inverse_masses, &[][..]);
     solve(blows.iter_mut(), &mut ties, &mut changes, moving);
@@ -361,6 +372,14 @@ fn pass_on(noted: &mut Noted, inverse_masses: &[f64], y1: &mut [f64]) {
             blow.note(&changes, joints);
         }
         noted.add_contact(impact.particle, blow.impulse);
+    }
+    if !step.y0.is_empty() {
+        let mut end = y1.to_vec();
+        (0..n).for_each(|i| set_row(&mut end[3 * n..], n, i, changes[i]));
+        joints.fit(&mut end);
+        let apart = (0..n).map(|i| (row(&end[3 * n..], n, i) - changes[i]).norm() * step.h);
+        let missed = &mut noted.statistics.missed;
+        *missed = apart.fold(*missed, f64::max);
     }
     let (x, v) = y1.split_at_mut(3 * n);
     for i in 0..n {

@@ -72,7 +72,8 @@ impl Phases {
         }
         let changes = network.tear_limit().is_some() || has_ropes(network);
         let changes = retry && (changes || !outflows(network).is_empty());
-        if limit.is_some() || changes || network.contact_layer().is_some() {
+        let passes_on = network.is_constrained() && network.can_touch();
+        if limit.is_some() || changes || passes_on || network.contact_layer().is_some() {
             self.contact.remember(y0);
         } else {
             self.contact.begin(network.solids(), y0, retry);

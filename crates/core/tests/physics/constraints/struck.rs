@@ -135,6 +135,55 @@ fn a_body_on_a_rod_rebounds_like_a_particle() {
     }
 }
 
+/// A rod of 1 m with equal masses slides down on its lower end, on a smooth floor: its middle goes
+/// straight down, and its energy gives the rate at any angle. Contact moves the lower end, and the
+/// rod passes that on, in every step: by methods of fixed steps that is of order 2, and adaptive
+/// ones see its error, which is proportional to the cube of a step.
+#[test]
+fn a_rod_slides_down_on_its_end() {
+    let (begun, ended, rate) = (1.1_f64, 0.5_f64, -0.5);
+    let inertia = |angle: f64| 1.0 + angle.cos().powi(2);
+    let rate_at = |angle: f64| {
+        let energy = inertia(begun) * rate * rate + 4.0 * G * (begun.sin() - angle.sin());
+        (energy / inertia(angle)).sqrt()
+    };
+    let (intervals, width) = (1000, (begun - ended) / 1000.0);
+    let weighted = (0..=intervals).map(|k| {
+        let ends = k == 0 || k == intervals;
+        let weight = [2.0, 4.0][k % 2] * if ends { 0.5 } else { 1.0 };
+        weight / rate_at(ended + width * k as f64)
+    });
+    let time = weighted.sum::<f64>() * width / 3.0;
+    let ([sin, cos], half) = ([begun.sin(), begun.cos()], 0.5 * rate);
+    let scene = format!(
+        "gravity = [0, -{G}, 0]
+        floor = 0
+        [particles]
+        positions = [[{}, 0, 0], [{}, {sin}, 0]]
+        velocities = [[{}, 0, 0], [{}, {}, 0]]
+        mass = 1
+        [[constraint]]
+        rod = [0, 1]",
+        -0.5 * cos,
+        0.5 * cos,
+        half * sin,
+        -half * sin,
+        rate * cos
+    );
+    let expected = vector(0.5 * ended.cos(), ended.sin(), 0.0);
+    let error = |method| (of(run(&scene, method, time).state(), 1)[0] - expected).norm();
+    for name in ["rk4", "verlet", "midpoint", "implicit-midpoint"] {
+        let [coarse, fine] = [64.0, 128.0].map(|count| error((name, Control::Step(time / count))));
+        assert!(coarse < 1e-4 && fine < 0.3 * coarse, "{name}: {coarse:e} m, {fine:e} m");
+    }
+    for name in ["dopri5", "dop853"] {
+        for tolerance in [1e-4, 1e-6, 1e-8] {
+            let off = error((name, Control::Tolerance(tolerance)));
+            assert!(off < 0.5 * tolerance.powf(2.0 / 3.0), "{name} {tolerance:e}: {off:e} m");
+        }
+    }
+}
+
 /// A bead on an inclined wire falls on a floor, and goes back up the wire at e times its speed.
 #[test]
 fn a_bead_on_a_wire_rebounds_along_it() {
