@@ -6,7 +6,8 @@ use nalgebra::Vector3;
 
 use super::approach::Approach;
 use super::contact_pair::LeastSpeed;
-use super::impulse::{Impulses, across, change_in_impact, rebound_speed};
+use super::held::{MIDDLE, PointImpact};
+use super::impulse::{Impulses, across, rebound_speed};
 use super::motion::Guarded;
 use super::obstacle::{Course, Obstacle, velocity};
 use super::response::Joints;
@@ -18,7 +19,7 @@ use crate::path::Pose;
 
 /// Gap before a step, as a share of the depth after it, up to which a particle counts as touching
 /// from the beginning of the step: it may be a rounding error.
-const TOUCHING_SHARE: f64 = 1e-6;
+pub(super) const TOUCHING_SHARE: f64 = 1e-6;
 
 /// Contact during a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,18 +58,6 @@ pub(super) struct Noted<'a> {
     pub held: &'a mut Vec<PointImpact>,
 }
 
-/// Impact of a particle on an obstacle, which constraints may pass on.
-#[derive(Clone, Debug)]
-pub(super) struct PointImpact {
-    pub particle: usize,
-    pub normal: Vector3<f64>,
-    pub least: LeastSpeed,
-    /// Velocity of the obstacle there (m/s).
-    pub carried: Vector3<f64>,
-    /// Time that remains of the step after a rebound (s).
-    pub left: f64,
-}
-
 /// End of a slide within a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stop {
@@ -77,14 +66,6 @@ pub struct Stop {
     /// Distance to the end of the step from there, at half of the speed at its beginning (m); 0
     /// where nothing slides.
     pub way: f64,
-}
-
-impl PointImpact {
-    /// Returns the change of the velocity (m/s) of a particle that is free.
-    fn change(&self) -> Vector3<f64> {
-        let LeastSpeed { before, speed, friction } = self.least;
-        change_in_impact(before, self.normal, speed, friction)
-    }
 }
 
 impl Noted<'_> {
@@ -199,10 +180,9 @@ impl Met<'_> {
         let is_held = noted.is_held(i);
         let depth = nearest.normal.dot(&(nearest.point - d));
         if let Some(rebound) = touch.and_then(|touch| self.rebound(i, row(v, n, i), &touch)) {
-            let share = 1.0 - rebound.left / self.span.h;
             if is_held {
-                noted.add_depth(depth, share);
-                noted.rebounds.push(share);
+                noted.add_depth(depth, rebound.share);
+                noted.rebounds.push(rebound.share);
                 noted.held.push(rebound);
                 return;
             }
@@ -212,7 +192,7 @@ impl Met<'_> {
             if surface(end - c).is_none() {
                 set_row(x, n, i, end);
                 set_row(v, n, i, row(v, n, i) + change);
-                noted.add_rebound(i, share, depth, change / self.inverse_masses[i]);
+                noted.add_rebound(i, rebound.share, depth, change / self.inverse_masses[i]);
                 return;
             }
         }
@@ -338,6 +318,7 @@ impl Met<'_> {
         let approach = -relative.dot(&normal);
         let speed = rebound_speed(restitution, approach, press, h);
         (speed > 0.0).then(|| PointImpact {
+            share,
             left: (1.0 - share) * h,
             ..self.impact(i, normal, [relative, carried], speed)
         })
@@ -358,6 +339,7 @@ impl Met<'_> {
             normal,
             least: LeastSpeed { before, speed, friction: self.friction },
             carried,
+            share: MIDDLE,
             left: 0.0,
         }
     }

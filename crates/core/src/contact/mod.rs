@@ -23,6 +23,7 @@ mod cut;
 mod footing;
 mod friction;
 mod guard;
+mod held;
 mod impact;
 mod impulse;
 mod layer;

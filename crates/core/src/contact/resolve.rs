@@ -2,16 +2,14 @@
 
 use nalgebra::Vector3;
 
-use super::contact_pair::{ContactPair, LeastSpeed};
+use super::contact_pair::LeastSpeed;
 use super::cut::Pinched;
 use super::guard::{Bodies, guard};
-use super::impact::{Blow, solve};
+use super::held::{MIDDLE, PointImpact, pass_on};
 use super::impulse::{Impulses, change_in_impact, rebound_speed, shortest_rebound};
 use super::layer::ContactLayer;
-use super::met::{Met, Noted, PointImpact, Statistics};
+use super::met::{Met, Noted, Statistics, TOUCHING_SHARE};
 use super::obstacle::{Obstacle, velocity};
-use super::response::{JoinedBodies, Tie};
-use super::solids::Field;
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
 use crate::geometry::closest::{of_box, of_capsule, of_floor, of_sphere};
@@ -19,6 +17,10 @@ use crate::interval::Interval;
 
 /// Share of a step within which rebounds count as simultaneous.
 pub(crate) const SIMULTANEOUS_SHARE: f64 = 1e-6;
+
+/// Distance from an obstacle that may be a rounding error, over the distances that it is computed
+/// from.
+const ROUNDING: f64 = 1e-14;
 
 /// Largest number of times in a step at which particles rebound that are told apart.
 const MAX_REBOUNDS: usize = 4;
@@ -42,12 +44,20 @@ pub struct ContactPhase {
     last: Statistics,
     /// Impulses of the last step, and its length (s).
     impulses: (Impulses, f64),
-    /// Particles that were struck at the end of a step before its other contacts are resolved, and
-    /// the sum of the magnitudes of their impulses (N s).
-    struck: (Vec<usize>, f64),
+    struck: Struck,
     /// Shares of the last step after which particles rebounded.
     rebounds: Vec<f64>,
     /// Impacts of particles that constraints hold.
+    held: Vec<PointImpact>,
+}
+
+/// Particles that are struck at the end of a step, before its other contacts are resolved.
+#[derive(Clone, Debug, Default)]
+struct Struck {
+    particles: Vec<usize>,
+    /// Sum of the magnitudes of their impulses (N s).
+    impulse: f64,
+    /// Impacts of particles that constraints hold. They are applied with the other contacts.
     held: Vec<PointImpact>,
 }
 
@@ -59,7 +69,7 @@ impl ContactPhase {
             y0: Vec::with_capacity(dim),
             last: Statistics::default(),
             impulses: (Impulses::with_room_for(dim / 6), 0.0),
-            struck: (Vec::with_capacity(dim / 6), 0.0),
+            struck: Struck::default(),
             rebounds: Vec::with_capacity(dim / 6),
             held: vec![],
         }
@@ -133,7 +143,7 @@ impl ContactPhase {
         let step = Step { t, h, y0: &self.y0 };
         let (impulses, length) = &mut self.impulses;
         *length = h;
-        let (struck, impulse) = &mut self.struck;
+        let Struck { particles: struck, impulse, held } = &mut self.struck;
         struck.sort_unstable();
         let masses = Masses { inverse: bodies.inverse_masses, struck, rebound: !bodies.are_struck };
         let mut last = Statistics::default();
@@ -145,7 +155,11 @@ impl ContactPhase {
             held: &mut self.held,
         };
         resolve_noting(obstacles, &masses, &step, y1, noted);
-        pass_on(noted, bodies.inverse_masses, &step, y1);
+        let held = std::mem::take(held);
+        if !(held.is_empty() && noted.held.is_empty()) {
+            noted.held.extend(touching(obstacles, noted, &masses, &step, y1));
+        }
+        pass_on(noted, held, (bodies.inverse_masses, &step), y1);
         last.impulse += std::mem::take(impulse);
         struck.clear();
         self.rebounds.sort_unstable_by(f64::total_cmp);
@@ -176,7 +190,7 @@ impl ContactPhase {
             impulses: &mut self.impulses.0,
             rebounds: &mut self.rebounds,
             joints: bodies.joints.filter(|_| y1.len() == 6 * n),
-            held: &mut self.held,
+            held: &mut self.struck.held,
         };
         noted.held.clear();
         let (x, v) = y1.split_at_mut(3 * n);
@@ -202,13 +216,14 @@ impl ContactPhase {
                 let shortest = shortest_rebound(press, [height, 0.0]);
                 let speed = rebound_speed(obstacle.restitution, approach, press, shortest);
                 set_row(x, n, i, pose.place.position + point);
-                self.struck.0.push(i);
+                self.struck.particles.push(i);
                 if noted.is_held(i) {
                     noted.held.push(PointImpact {
                         particle: i,
                         normal,
                         least: LeastSpeed { before: relative, speed, friction: obstacle.friction },
                         carried,
+                        share: 1.0,
                         left: 0.0,
                     });
                     continue;
@@ -218,8 +233,7 @@ impl ContactPhase {
                 noted.add_contact(i, change / inverse_masses[i]);
             }
         }
-        pass_on(noted, inverse_masses, &Step { t, h, y0: &[] }, y1);
-        self.struck.1 += statistics.impulse;
+        self.struck.impulse += statistics.impulse;
     }
 
     /// Applies the collision safeguard to the surfaces in a step of h (s) from time t (s) to y1.
@@ -323,68 +337,39 @@ fn resolve_noting(
     }
 }
 
-/// Applies the impacts of particles that constraints hold, with what these pass on, to y1. If the
-/// beginning of the step is known, they pass a rebound on as they lie at its time, and a contact as
-/// they lie in the middle of the step: one that lasts for all of it is then of order 2. Notes the
-/// difference from the end of the step.
-fn pass_on(noted: &mut Noted, inverse_masses: &[f64], step: &Step, y1: &mut [f64]) {
-    let (Some(joints), false) = (noted.joints, noted.held.is_empty()) else {
-        return;
-    };
-    let n = inverse_masses.len();
-    let held = std::mem::take(noted.held);
-    let state_in = |impact: &PointImpact| {
-        let left = if impact.left > 0.0 { impact.left / step.h } else { 0.5 };
-        let mut y = y1.to_vec();
-        for (x, begun) in y[..3 * n].iter_mut().zip(step.y0) {
-            *x += (begun - *x) * left;
-        }
-        y
-    };
-    let mut blows: Vec<_> = (held.iter())
-        .map(|impact| {
-            let points = ([impact.particle as u32; 4], [1.0, 0.0, 0.0, 0.0]);
-            let mut contact =
-                ContactPair::with_arms(points, impact.normal, inverse_masses, &[None, None]);
-            let is_smooth = impact.least.friction == 0.0;
-            let joined = JoinedBodies { joints, y: &state_in(impact) };
-            contact.join(joined, is_smooth, inverse_masses, &[]);
-            let is_free = impact.least.speed > 0.0;
-            Blow::new(contact, impact.least, is_free, impact.carried)
+/// Lists the contacts of particles that constraints hold and that just touch an obstacle at both
+/// ends of a step, and do not strike it at the end: what is struck elsewhere may push them.
+fn touching(
+    obstacles: &[Obstacle],
+    noted: &Noted,
+    masses: &Masses,
+    step: &Step,
+    y1: &[f64],
+) -> Vec<PointImpact> {
+    let n = masses.inverse.len();
+    if step.y0.is_empty() {
+        return vec![];
+    }
+    let held = (0..n).filter(|i| masses.inverse[*i] > 0.0 && noted.is_held(*i));
+    let held = held.filter(|i| masses.struck.binary_search(i).is_err());
+    let pairs = held.flat_map(|i| obstacles.iter().map(move |obstacle| (i, obstacle)));
+    let contacts = pairs.filter_map(|(i, obstacle)| {
+        let (begun, x, v) = (row(step.y0, n, i), row(y1, n, i), row(&y1[3 * n..], n, i));
+        let [before, pose] = obstacle.at_ends([step.t, step.t + step.h]);
+        let [first, d] = [begun - before.place.position, x - pose.place.position];
+        let near = ROUNDING * (x.norm() + d.norm()) + TOUCHING_SHARE * (x - begun).norm();
+        let seen = obstacle.shape.separation(pose.inwards(d));
+        let first = obstacle.shape.separation(before.inwards(first));
+        let touches = seen.distance.abs().max(first.distance.abs()) <= near;
+        let carried = velocity(&pose, d);
+        touches.then(|| PointImpact {
+            particle: i,
+            normal: pose.outwards(seen.normal),
+            least: LeastSpeed { before: v - carried, speed: 0.0, friction: obstacle.friction },
+            carried,
+            share: MIDDLE,
+            left: 0.0,
         })
-        .collect();
-    let mut before = Field::still(n, 0);
-    for i in 0..n {
-        before[i] = row(&y1[3 * n..], n, i);
-    }
-    let mut ties = Tie::all(JoinedBodies { joints, y: y1 }, &[], &before);
-    let mut changes = Field::still(n, 0);
-    let moving = (inverse_masses, &[][..]);
-    solve(blows.iter_mut(), &mut ties, &mut changes, moving);
-    let mut moves = Field::still(n, 0);
-    let left = held.iter().map(|impact| impact.left).fold(0.0, f64::max);
-    for tie in &ties {
-        tie.push(left, &mut moves);
-    }
-    for (impact, blow) in held.iter().zip(&blows) {
-        blow.contact.push(blow.impulse * impact.left, inverse_masses, &mut moves);
-        if blow.is_free {
-            blow.note(&changes, joints);
-        }
-        noted.add_contact(impact.particle, blow.impulse);
-    }
-    if !step.y0.is_empty() {
-        let mut end = y1.to_vec();
-        (0..n).for_each(|i| set_row(&mut end[3 * n..], n, i, changes[i]));
-        joints.fit(&mut end);
-        let apart = (0..n).map(|i| (row(&end[3 * n..], n, i) - changes[i]).norm() * step.h);
-        let missed = &mut noted.statistics.missed;
-        *missed = apart.fold(*missed, f64::max);
-    }
-    let (x, v) = y1.split_at_mut(3 * n);
-    for i in 0..n {
-        set_row(x, n, i, row(x, n, i) + moves[i]);
-        set_row(v, n, i, row(v, n, i) + changes[i]);
-    }
-    *noted.held = held;
+    });
+    contacts.collect()
 }

@@ -184,6 +184,38 @@ fn a_rod_slides_down_on_its_end() {
     }
 }
 
+/// A rod of two particles of 1 kg falls along the side of a box, which its lower end touches, and
+/// its upper end strikes the top. The box holds the lower end while that is struck: with the speeds
+/// s of the upper end upwards and r across, the ends have the velocities (0, r - 1) and (-r, s),
+/// and the rod at 45 degrees demands 2 r = 1 + s.
+#[test]
+fn a_rod_that_is_struck_pushes_what_touches() {
+    for restitution in [0.0, 0.3, 0.5, 1.0] {
+        let scene = format!(
+            "contact_gravity = {G}
+            [particles]
+            positions = [[0, -0.3, 0], [0.4, 0.1, 0]]
+            velocities = [[0, -1, 0], [0, -1, 0]]
+            mass = 1
+            [[constraint]]
+            rod = [0, 1]
+            [[box]]
+            center = [0.5, -0.5, 0]
+            size = [1, 1, 1]
+            restitution = {restitution}"
+        );
+        let across = 0.5 * (1.0 + restitution);
+        let expected = [vector(0.0, across - 1.0, 0.0), vector(-across, restitution, 0.0)];
+        for method in all() {
+            let found = speeds(&run(&scene, method, 0.101), [0, 1]);
+            for (found, expected) in found.into_iter().zip(expected) {
+                let off = (found - expected).norm();
+                assert!(off < 4e-3, "{}, e {restitution}: {found}", method.0);
+            }
+        }
+    }
+}
+
 /// A bead on an inclined wire falls on a floor, and goes back up the wire at e times its speed.
 #[test]
 fn a_bead_on_a_wire_rebounds_along_it() {

@@ -1,0 +1,149 @@
+//! Impacts of particles that constraints hold. Each acts as the constraints lie at its time: at the
+//! end of a step for what strikes there, at its time for a rebound within the step, and in the
+//! middle for contact that lasts for the step, which is then of order 2.
+
+use nalgebra::Vector3;
+
+use super::contact_pair::{ContactPair, LeastSpeed};
+use super::impact::{Blow, solve};
+use super::impulse::change_in_impact;
+use super::met::Noted;
+use super::resolve::{SIMULTANEOUS_SHARE, Step};
+use super::response::{JoinedBodies, Joints, Tie};
+use super::solids::Field;
+use crate::columns::{row, set_row};
+
+/// Share of a step at which contact acts that lasts for all of it.
+pub(super) const MIDDLE: f64 = 0.5;
+
+/// Impact of a particle on an obstacle, which constraints may pass on.
+#[derive(Clone, Debug)]
+pub(super) struct PointImpact {
+    pub particle: usize,
+    pub normal: Vector3<f64>,
+    pub least: LeastSpeed,
+    /// Velocity of the obstacle there (m/s).
+    pub carried: Vector3<f64>,
+    /// Share of the step at which it acts.
+    pub share: f64,
+    /// Time that remains of the step after a rebound (s).
+    pub left: f64,
+}
+
+impl PointImpact {
+    /// Returns the change of the velocity (m/s) of a particle that is free.
+    pub fn change(&self) -> Vector3<f64> {
+        let LeastSpeed { before, speed, friction } = self.least;
+        change_in_impact(before, self.normal, speed, friction)
+    }
+
+    /// Adds a change of the velocity (m/s) before the impact. The coefficient of restitution stays.
+    fn add(&mut self, change: Vector3<f64>) {
+        let approach = self.least.before.dot(&self.normal);
+        self.least.before += change;
+        if self.least.speed > 0.0 {
+            let share = self.least.before.dot(&self.normal) / approach;
+            self.least.speed *= share.max(0.0);
+        }
+    }
+}
+
+/// Applies the noted impacts to y1, the end of a step, with what constraints pass on: first the
+/// contact that lasts for the step; then what rebounds within the step or is `struck` at its end,
+/// which may push what touches already.
+pub(super) fn pass_on(
+    noted: &mut Noted,
+    struck: Vec<PointImpact>,
+    (inverse_masses, step): (&[f64], &Step),
+    y1: &mut [f64],
+) {
+    let Some(joints) = noted.joints else {
+        return;
+    };
+    let n = inverse_masses.len();
+    let (rebounds, lasting): (Vec<_>, Vec<_>) =
+        noted.held.drain(..).partition(|impact| impact.left > 0.0);
+    let mut sudden: Vec<_> = rebounds.into_iter().chain(struck).collect();
+    sudden.sort_by(|a, b| a.share.total_cmp(&b.share));
+    let free = y1[3 * n..6 * n].to_vec();
+    apply(noted, (joints, &lasting), (inverse_masses, step), y1);
+    let lasted = y1[3 * n..6 * n].to_vec();
+    for group in sudden.chunk_by_mut(|a, b| b.share - a.share <= SIMULTANEOUS_SHARE) {
+        let speed = |i: usize| row(&y1[3 * n..], n, i);
+        for impact in &mut *group {
+            let i = impact.particle;
+            let after = row(&lasted, n, i);
+            impact.add((after - row(&free, n, i)) * impact.share + speed(i) - after);
+        }
+        let PointImpact { share, left, .. } = group[0];
+        let others = lasting.iter().map(|contact| {
+            let before = speed(contact.particle) - contact.carried;
+            let least = LeastSpeed { before, ..contact.least };
+            PointImpact { least, share, left, ..contact.clone() }
+        });
+        let together: Vec<_> = group.iter().cloned().chain(others).collect();
+        apply(noted, (joints, &together), (inverse_masses, step), y1);
+    }
+}
+
+/// Applies impacts at one time to y1, the end of a step. Notes how much what constraints pass on
+/// differs from that at the end of the step.
+fn apply(
+    noted: &mut Noted,
+    (joints, impacts): (&dyn Joints, &[PointImpact]),
+    (inverse_masses, step): (&[f64], &Step),
+    y1: &mut [f64],
+) {
+    if impacts.is_empty() {
+        return;
+    }
+    let n = inverse_masses.len();
+    let mut blows: Vec<_> = (impacts.iter())
+        .map(|impact| {
+            let points = ([impact.particle as u32; 4], [1.0, 0.0, 0.0, 0.0]);
+            let mut contact =
+                ContactPair::with_arms(points, impact.normal, inverse_masses, &[None, None]);
+            let mut y = y1.to_vec();
+            for (x, begun) in y[..3 * n].iter_mut().zip(step.y0) {
+                *x += (begun - *x) * (1.0 - impact.share);
+            }
+            let is_smooth = impact.least.friction == 0.0;
+            contact.join(JoinedBodies { joints, y: &y }, is_smooth, inverse_masses, &[]);
+            let is_free = impact.least.speed > 0.0;
+            Blow::new(contact, impact.least, is_free, impact.carried)
+        })
+        .collect();
+    let mut before = Field::still(n, 0);
+    for i in 0..n {
+        before[i] = row(&y1[3 * n..], n, i);
+    }
+    let mut ties = Tie::all(JoinedBodies { joints, y: y1 }, &[], &before);
+    let mut changes = Field::still(n, 0);
+    let moving = (inverse_masses, &[][..]);
+    solve(blows.iter_mut(), &mut ties, &mut changes, moving);
+    let mut moves = Field::still(n, 0);
+    let left = impacts.iter().map(|impact| impact.left).fold(0.0, f64::max);
+    for tie in &ties {
+        tie.push(left, &mut moves);
+    }
+    for (impact, blow) in impacts.iter().zip(&blows) {
+        blow.contact.push(blow.impulse * impact.left, inverse_masses, &mut moves);
+        if blow.is_free {
+            blow.note(&changes, joints);
+        }
+        noted.add_contact(impact.particle, blow.impulse);
+    }
+    let mut end = y1.to_vec();
+    for i in 0..n {
+        set_row(&mut end[3 * n..], n, i, changes[i]);
+    }
+    joints.fit(&mut end);
+    let apart = (0..n).map(|i| (row(&end[3 * n..], n, i) - changes[i]).norm() * step.h);
+    let missed = &mut noted.statistics.missed;
+    *missed = apart.fold(*missed, f64::max);
+    let (x, v) = y1.split_at_mut(3 * n);
+    for i in 0..n {
+        set_row(x, n, i, row(x, n, i) + moves[i]);
+        set_row(v, n, i, row(v, n, i) + changes[i]);
+    }
+}
