@@ -42,6 +42,9 @@ const ROUNDING_ERROR: f64 = 1e-15;
 /// gap may lose.
 const NEAR_SHARE: f64 = 0.1;
 
+/// Share of the distance of the closest points that a plane proves, if rounding has not turned it.
+const STRAIGHT_SHARE: f64 = 0.99;
+
 /// Largest number of planes for a pair. The search then returns the time reached so far.
 const MAX_PLANES: usize = 20_000;
 
@@ -270,7 +273,8 @@ pub(super) fn are_apart(
     })
 }
 
-/// Plane between two primitives, perpendicular to the line through their closest points.
+/// Plane between two primitives, perpendicular to the line through their closest points or, if
+/// rounding turns that line, along the larger primitive.
 struct Plane {
     /// Distance along the normal of each point of the first primitive from each point of the second
     /// (m).
@@ -288,6 +292,28 @@ impl Plane {
         let Closest { weights, offset } = closest(kind, at);
         let distance = offset.norm();
         let normal = if distance > 0.0 { offset / distance } else { Vector3::zeros() };
+        let rate = normal.dot(&weighted(&weights, moves));
+        let plane = Self::across(normal, kind, [at, moves], rate);
+        let is_straight = |plane: &Self| plane.apart >= STRAIGHT_SHARE * distance;
+        if is_straight(&plane) {
+            return plane;
+        }
+        let [a, b] = match kind {
+            PairKind::EdgeEdge => [at[1] - at[0], at[3] - at[2]],
+            _ => [at[2] - at[1], at[3] - at[1]],
+        };
+        let flat = a.cross(&b).try_normalize(0.0).map(|it| it * it.dot(&offset).signum());
+        let flat = flat.map(|flat| Self::across(flat, kind, [at, moves], rate));
+        flat.filter(is_straight).unwrap_or(plane)
+    }
+
+    /// Returns the plane with a normal between primitives whose closest points part at a rate.
+    fn across(
+        normal: Vector3<f64>,
+        kind: PairKind,
+        [at, moves]: [&[Vector3<f64>; 4]; 2],
+        rate: f64,
+    ) -> Self {
         let along = |[a, b, c, d]: [f64; 4]| match kind {
             PairKind::EdgeEdge => [a - c, a - d, b - c, b - d],
             _ => [a - b, a - c, a - d, a - d],
@@ -297,7 +323,7 @@ impl Plane {
             distances,
             rates: along(moves.map(|u| normal.dot(&u))),
             apart: distances.into_iter().fold(f64::INFINITY, f64::min),
-            rate: normal.dot(&weighted(&weights, moves)),
+            rate,
         }
     }
 

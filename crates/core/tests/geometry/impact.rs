@@ -163,6 +163,22 @@ fn lifted(heights: [f64; 4]) -> [Vector3<f64>; 4] {
     heights.map(|y| Vector3::new(0.3, y, -0.2))
 }
 
+/// A vertex 22 nm above a triangle of 2 m, 7 m from the origin, moves with it, by far more than that
+/// distance. Rounding turns the line through their closest points by 2e-8.
+#[test]
+fn what_a_large_triangle_carries_is_not_hit() {
+    let (top, height) = (0.1246089263624992, 2.2085e-8);
+    let at = |x, y, z| Vector3::new(x, y, z);
+    let vertex = at(6.92394888853338, top + height, 0.923941306321096);
+    let from = [vertex, at(6.0, top, 0.0), at(8.0, top, 2.0), at(8.0, top, 0.0)];
+    let mut moves = [Vector3::y() * 4.6308e-5; 4];
+    moves[0] += at(-7.9e-7, 0.0, -8.2e-7);
+    let of = |moves| time_of_impact(VertexTriangle, &from, &moves, 0.0, 0.9 * height);
+    assert_eq!(of(moves), None);
+    moves[0].y -= 0.3 * height;
+    assert!(of(moves).is_some());
+}
+
 #[test]
 fn what_begins_nearer_than_the_gap_is_held_only_if_it_approaches() {
     let of = |kind, height, moves| time_of_impact(kind, &above(height), &lifted(moves), 0.0, 1e-3);
