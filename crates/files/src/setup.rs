@@ -83,8 +83,10 @@ impl Request {
             let count = network.particles();
             let held = network.pins().count();
             if count > 1 && held == count && network.all_pins().all(|pin| pin.until.is_none()) {
+                let drained = network.fluid().map_or(0, |it| it.members().drained().len());
+                let why = if drained == 0 { "are pinned" } else { "are pinned or have flowed out" };
                 terminal::note(&format!(
-                    "all {count} particles of the scene {} are pinned",
+                    "all {count} particles of the scene {} {why}",
                     setup.scene.name
                 ));
             }

@@ -2,51 +2,12 @@
 //! end of a step for what strikes there, at its time for a rebound within the step, and in the
 //! middle for contact that lasts for the step, which is then of order 2.
 
-use nalgebra::Vector3;
-
 use super::contact_pair::{ContactPair, LeastSpeed};
 use super::impact::{Blow, solve};
-use super::impulse::change_in_impact;
-use super::met::Noted;
-use super::resolve::{SIMULTANEOUS_SHARE, Step};
+use super::met::{Noted, PointImpact, SIMULTANEOUS_SHARE, Step};
 use super::response::{JoinedBodies, Joints, Tie};
 use super::solids::Field;
 use crate::columns::{row, set_row};
-
-/// Share of a step at which contact acts that lasts for all of it.
-pub(super) const MIDDLE: f64 = 0.5;
-
-/// Impact of a particle on an obstacle, which constraints may pass on.
-#[derive(Clone, Debug)]
-pub(super) struct PointImpact {
-    pub particle: usize,
-    pub normal: Vector3<f64>,
-    pub least: LeastSpeed,
-    /// Velocity of the obstacle there (m/s).
-    pub carried: Vector3<f64>,
-    /// Share of the step at which it acts.
-    pub share: f64,
-    /// Time that remains of the step after a rebound (s).
-    pub left: f64,
-}
-
-impl PointImpact {
-    /// Returns the change of the velocity (m/s) of a particle that is free.
-    pub fn change(&self) -> Vector3<f64> {
-        let LeastSpeed { before, speed, friction } = self.least;
-        change_in_impact(before, self.normal, speed, friction)
-    }
-
-    /// Adds a change of the velocity (m/s) before the impact. The coefficient of restitution stays.
-    fn add(&mut self, change: Vector3<f64>) {
-        let approach = self.least.before.dot(&self.normal);
-        self.least.before += change;
-        if self.least.speed > 0.0 {
-            let share = self.least.before.dot(&self.normal) / approach;
-            self.least.speed *= share.max(0.0);
-        }
-    }
-}
 
 /// Applies the noted impacts to y1, the end of a step, with what constraints pass on: first the
 /// contact that lasts for the step; then what rebounds within the step or is `struck` at its end,
@@ -63,6 +24,12 @@ pub(super) fn pass_on(
     let n = inverse_masses.len();
     let (rebounds, lasting): (Vec<_>, Vec<_>) =
         noted.held.drain(..).partition(|impact| impact.left > 0.0);
+    // What strikes an obstacle touches it at the end of the step only.
+    let strikes = |impact: &PointImpact| {
+        let own = |it: &PointImpact| (it.particle, it.obstacle);
+        struck.iter().any(|it| own(it) == own(impact))
+    };
+    let lasting: Vec<_> = lasting.into_iter().filter(|it| !strikes(it)).collect();
     let mut sudden: Vec<_> = rebounds.into_iter().chain(struck).collect();
     sudden.sort_by(|a, b| a.share.total_cmp(&b.share));
     let free = y1[3 * n..6 * n].to_vec();

@@ -6,8 +6,7 @@ use nalgebra::Vector3;
 
 use super::approach::Approach;
 use super::contact_pair::LeastSpeed;
-use super::held::{MIDDLE, PointImpact};
-use super::impulse::{Impulses, across, rebound_speed};
+use super::impulse::{Impulses, across, change_in_impact, rebound_speed};
 use super::motion::Guarded;
 use super::obstacle::{Course, Obstacle, velocity};
 use super::response::Joints;
@@ -20,6 +19,24 @@ use crate::path::Pose;
 /// Gap before a step, as a share of the depth after it, up to which a particle counts as touching
 /// from the beginning of the step: it may be a rounding error.
 pub(super) const TOUCHING_SHARE: f64 = 1e-6;
+
+/// Share of a step at which contact acts that lasts for all of it.
+pub(super) const MIDDLE: f64 = 0.5;
+
+/// Share of a step within which rebounds count as simultaneous.
+pub(crate) const SIMULTANEOUS_SHARE: f64 = 1e-6;
+
+/// Step that an integrator has taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'a> {
+    /// Time of its beginning (s).
+    pub t: f64,
+    /// Length (s).
+    pub h: f64,
+    /// State at its beginning, [x | v], or empty. If it is empty, displacements are unknown:
+    /// friction acts on velocities only, nothing rebounds, and the statistics have no depth.
+    pub y0: &'a [f64],
+}
 
 /// Contact during a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -56,6 +73,40 @@ pub(super) struct Noted<'a> {
     /// have changed no velocity yet.
     pub joints: Option<&'a dyn Joints>,
     pub held: &'a mut Vec<PointImpact>,
+}
+
+/// Impact of a particle on an obstacle, which constraints may pass on.
+#[derive(Clone, Debug)]
+pub(super) struct PointImpact {
+    pub particle: usize,
+    /// Number of the obstacle.
+    pub obstacle: usize,
+    pub normal: Vector3<f64>,
+    pub least: LeastSpeed,
+    /// Velocity of the obstacle there (m/s).
+    pub carried: Vector3<f64>,
+    /// Share of the step at which it acts.
+    pub share: f64,
+    /// Time that remains of the step after a rebound (s).
+    pub left: f64,
+}
+
+impl PointImpact {
+    /// Returns the change of the velocity (m/s) of a particle that is free.
+    pub fn change(&self) -> Vector3<f64> {
+        let LeastSpeed { before, speed, friction } = self.least;
+        change_in_impact(before, self.normal, speed, friction)
+    }
+
+    /// Adds a change of the velocity (m/s) before the impact. The coefficient of restitution stays.
+    pub fn add(&mut self, change: Vector3<f64>) {
+        let approach = self.least.before.dot(&self.normal);
+        self.least.before += change;
+        if self.least.speed > 0.0 {
+            let share = self.least.before.dot(&self.normal) / approach;
+            self.least.speed *= share.max(0.0);
+        }
+    }
 }
 
 /// End of a slide within a step.
@@ -110,6 +161,8 @@ pub(super) struct Met<'a> {
     /// their velocities at the end are no longer those of their courses.
     pub struck: &'a [usize],
     pub obstacle: &'a Obstacle,
+    /// Its number.
+    pub number: usize,
     pub friction: f64,
     /// Coefficient of restitution; 0 where the end of the step has its rebounds already.
     pub restitution: f64,
@@ -336,6 +389,7 @@ impl Met<'_> {
     ) -> PointImpact {
         PointImpact {
             particle: i,
+            obstacle: self.number,
             normal,
             least: LeastSpeed { before, speed, friction: self.friction },
             carried,

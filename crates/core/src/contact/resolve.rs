@@ -5,18 +5,17 @@ use nalgebra::Vector3;
 use super::contact_pair::LeastSpeed;
 use super::cut::Pinched;
 use super::guard::{Bodies, guard};
-use super::held::{MIDDLE, PointImpact, pass_on};
+use super::held::pass_on;
 use super::impulse::{Impulses, change_in_impact, rebound_speed, shortest_rebound};
 use super::layer::ContactLayer;
-use super::met::{Met, Noted, Statistics, TOUCHING_SHARE};
+use super::met::{
+    MIDDLE, Met, Noted, PointImpact, SIMULTANEOUS_SHARE, Statistics, Step, TOUCHING_SHARE,
+};
 use super::obstacle::{Obstacle, velocity};
 use crate::columns::{row, set_row};
 use crate::geometry::Shape;
 use crate::geometry::closest::{of_box, of_capsule, of_floor, of_sphere};
 use crate::interval::Interval;
-
-/// Share of a step within which rebounds count as simultaneous.
-pub(crate) const SIMULTANEOUS_SHARE: f64 = 1e-6;
 
 /// Distance from an obstacle that may be a rounding error, over the distances that it is computed
 /// from.
@@ -24,18 +23,6 @@ const ROUNDING: f64 = 1e-14;
 
 /// Largest number of times in a step at which particles rebound that are told apart.
 const MAX_REBOUNDS: usize = 4;
-
-/// Step that an integrator has taken.
-#[derive(Clone, Copy, Debug)]
-pub struct Step<'a> {
-    /// Time of its beginning (s).
-    pub t: f64,
-    /// Length (s).
-    pub h: f64,
-    /// State at its beginning, [x | v], or empty. If it is empty, displacements are unknown:
-    /// friction acts on velocities only, nothing rebounds, and the statistics have no depth.
-    pub y0: &'a [f64],
-}
 
 /// Contact phase of a run, with its scratch.
 #[derive(Clone, Debug, Default)]
@@ -194,7 +181,7 @@ impl ContactPhase {
         };
         noted.held.clear();
         let (x, v) = y1.split_at_mut(3 * n);
-        for obstacle in obstacles {
+        for (number, obstacle) in obstacles.iter().enumerate() {
             let pose = obstacle.at(t);
             for i in (0..n).filter(|i| inverse_masses[*i] > 0.0) {
                 let d = row(x, n, i) - pose.place.position;
@@ -220,6 +207,7 @@ impl ContactPhase {
                 if noted.is_held(i) {
                     noted.held.push(PointImpact {
                         particle: i,
+                        obstacle: number,
                         normal,
                         least: LeastSpeed { before: relative, speed, friction: obstacle.friction },
                         carried,
@@ -305,7 +293,7 @@ fn resolve_noting(
     noted.impulses.clear();
     noted.rebounds.clear();
     noted.held.clear();
-    for obstacle in obstacles {
+    for (number, obstacle) in obstacles.iter().enumerate() {
         let [before, after] = obstacle.at_ends([step.t, step.t + step.h]);
         let met = Met {
             x0: step.y0.get(..3 * n),
@@ -313,6 +301,7 @@ fn resolve_noting(
             inverse_masses: masses.inverse,
             struck: masses.struck,
             obstacle,
+            number,
             friction: obstacle.friction,
             restitution: if masses.rebound { obstacle.restitution } else { 0.0 },
             span: Interval { t: step.t, h: step.h },
@@ -338,7 +327,7 @@ fn resolve_noting(
 }
 
 /// Lists the contacts of particles that constraints hold and that just touch an obstacle at both
-/// ends of a step, and do not strike it at the end: what is struck elsewhere may push them.
+/// ends of a step: what is struck elsewhere may push them.
 fn touching(
     obstacles: &[Obstacle],
     noted: &Noted,
@@ -351,9 +340,8 @@ fn touching(
         return vec![];
     }
     let held = (0..n).filter(|i| masses.inverse[*i] > 0.0 && noted.is_held(*i));
-    let held = held.filter(|i| masses.struck.binary_search(i).is_err());
-    let pairs = held.flat_map(|i| obstacles.iter().map(move |obstacle| (i, obstacle)));
-    let contacts = pairs.filter_map(|(i, obstacle)| {
+    let pairs = held.flat_map(|i| obstacles.iter().enumerate().map(move |it| (i, it)));
+    let contacts = pairs.filter_map(|(i, (number, obstacle))| {
         let (begun, x, v) = (row(step.y0, n, i), row(y1, n, i), row(&y1[3 * n..], n, i));
         let [before, pose] = obstacle.at_ends([step.t, step.t + step.h]);
         let [first, d] = [begun - before.place.position, x - pose.place.position];
@@ -364,6 +352,7 @@ fn touching(
         let carried = velocity(&pose, d);
         touches.then(|| PointImpact {
             particle: i,
+            obstacle: number,
             normal: pose.outwards(seen.normal),
             least: LeastSpeed { before: v - carried, speed: 0.0, friction: obstacle.friction },
             carried,

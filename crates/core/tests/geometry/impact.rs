@@ -163,8 +163,8 @@ fn lifted(heights: [f64; 4]) -> [Vector3<f64>; 4] {
     heights.map(|y| Vector3::new(0.3, y, -0.2))
 }
 
-/// A vertex 22 nm above a triangle of 2 m, 7 m from the origin, moves with it, by far more than that
-/// distance. Rounding turns the line through their closest points by 2e-8.
+/// A vertex 22 nm above a triangle of 2 m, 7 m from the origin, moves with it, by far more than
+/// that distance. Rounding turns the line through their closest points by 2e-8.
 #[test]
 fn what_a_large_triangle_carries_is_not_hit() {
     let (top, height) = (0.1246089263624992, 2.2085e-8);

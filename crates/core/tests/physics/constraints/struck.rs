@@ -184,6 +184,47 @@ fn a_rod_slides_down_on_its_end() {
     }
 }
 
+/// A bead on a wire, or on a taut rope, rebounds elastically from balls in any direction: the bead
+/// on the wire just turns back, and no energy is lost. At the end of a step it is on the ball up to
+/// rounding, inside or outside.
+#[test]
+fn beads_rebound_from_balls_at_any_angle() {
+    for k in 0..40 {
+        let angle = 0.05 + 0.03 * f64::from(k);
+        let (sin, cos) = angle.sin_cos();
+        let [x, y] = [0.3 * cos, 0.3 * sin];
+        for is_rope in [false, true] {
+            let constraint = if is_rope {
+                "rope = [0, 1]".to_string()
+            } else {
+                "particle = 0
+                line = { point = [0.45, 0.1, 0], direction = [1, 0, 0] }"
+                    .to_string()
+            };
+            let scene = format!(
+                "contact_gravity = {G}
+                [particles]
+                positions = [[0.45, 0.1, 0], [0.45, 0.6, 0]]
+                velocities = [[-2, 0, 0], [0, 0, 0]]
+                mass = 1
+                pin = [{{ particles = [1] }}]
+                [[constraint]]
+                {constraint}
+                [[sphere]]
+                center = [{}, {}, 0]
+                radius = 0.3
+                restitution = 1",
+                0.3 - x,
+                0.1 - y * 0.3
+            );
+            for method in all() {
+                let speed = speeds(&run(&scene, method, 0.25), [0])[0].norm();
+                assert!((speed - 2.0).abs() < 1e-3, "{}, {angle}, {is_rope}: {speed}", method.0);
+            }
+        }
+    }
+}
+
 /// A rod of two particles of 1 kg falls along the side of a box, which its lower end touches, and
 /// its upper end strikes the top. The box holds the lower end while that is struck: with the speeds
 /// s of the upper end upwards and r across, the ends have the velocities (0, r - 1) and (-r, s),
