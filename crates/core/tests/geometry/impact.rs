@@ -167,9 +167,9 @@ fn lifted(heights: [f64; 4]) -> [Vector3<f64>; 4] {
 /// that distance. Rounding turns the line through their closest points by 2e-8.
 #[test]
 fn what_a_large_triangle_carries_is_not_hit() {
-    let (top, height) = (0.1246089263624992, 2.2085e-8);
+    let (top, height) = (0.124_608_926_362_499_2, 2.2085e-8);
     let at = |x, y, z| Vector3::new(x, y, z);
-    let vertex = at(6.92394888853338, top + height, 0.923941306321096);
+    let vertex = at(6.923_948_888_533_38, top + height, 0.923_941_306_321_096);
     let from = [vertex, at(6.0, top, 0.0), at(8.0, top, 2.0), at(8.0, top, 0.0)];
     let mut moves = [Vector3::y() * 4.6308e-5; 4];
     moves[0] += at(-7.9e-7, 0.0, -8.2e-7);
