@@ -73,6 +73,30 @@ pub(super) struct Noted<'a> {
     /// have changed no velocity yet.
     pub joints: Option<&'a dyn Joints>,
     pub held: &'a mut Vec<PointImpact>,
+    /// What moved such particles in all turns of the step, with the numbers of particle and
+    /// obstacle.
+    pub rubs: &'a mut Vec<([usize; 2], Rub)>,
+}
+
+/// Displacements of a particle by an obstacle in all turns of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Rub {
+    /// Along the normals (m).
+    pressed: f64,
+    /// By friction (m).
+    rubbed: Vector3<f64>,
+}
+
+impl Rub {
+    /// Adds a depth (m) to which the particle went in, and the friction that holds it back from a
+    /// slip (m). Returns the displacement by friction, or `None` if it sticks.
+    fn hold(&mut self, slip: Vector3<f64>, depth: f64, friction: f64) -> Option<Vector3<f64>> {
+        // A particle on the surface may be moved inwards, by rounding: friction is 0 then.
+        self.pressed += depth.max(0.0);
+        let (before, wanted) = (self.rubbed, self.rubbed - slip);
+        self.rubbed = wanted.cap_magnitude(friction * self.pressed);
+        (self.rubbed != wanted).then(|| self.rubbed - before)
+    }
 }
 
 /// Impact of a particle on an obstacle, which constraints may pass on.
@@ -135,6 +159,16 @@ impl Noted<'_> {
             self.statistics.depth = depth;
             self.statistics.touched = share;
         }
+    }
+
+    /// Returns what an obstacle has done to a particle in earlier turns, given the numbers of both.
+    fn rub(&mut self, own: [usize; 2]) -> &mut Rub {
+        let known = self.rubs.iter().position(|(it, _)| *it == own);
+        let at = known.unwrap_or(self.rubs.len());
+        if at == self.rubs.len() {
+            self.rubs.push((own, Rub::default()));
+        }
+        &mut self.rubs[at].1
     }
 
     /// Notes the contact of particle i, by an impulse (N s).
@@ -267,9 +301,12 @@ impl Met<'_> {
             if self.friction > 0.0 {
                 let touched = touched([carried, at], [depth, approach]);
                 let slip = across(row(x, n, i) - touched, nearest.normal);
-                let held = match self.kept(slip, depth) {
-                    0.0 => surface(touched - c).map_or(touched, |nearest| c + nearest.point),
-                    kept => row(x, n, i) - slip * (1.0 - kept),
+                // Friction in all turns of the step is within the cone of all that pressed.
+                let rub = &mut Rub::default();
+                let rub = if is_held { noted.rub([i, self.number]) } else { rub };
+                let held = match rub.hold(slip, depth, self.friction) {
+                    None => surface(touched - c).map_or(touched, |nearest| c + nearest.point),
+                    Some(change) => row(x, n, i) + change,
                 };
                 set_row(x, n, i, held);
             }

@@ -9,7 +9,7 @@ use super::held::pass_on;
 use super::impulse::{Impulses, change_in_impact, rebound_speed, shortest_rebound};
 use super::layer::ContactLayer;
 use super::met::{
-    MIDDLE, Met, Noted, PointImpact, SIMULTANEOUS_SHARE, Statistics, Step, TOUCHING_SHARE,
+    MIDDLE, Met, Noted, PointImpact, Rub, SIMULTANEOUS_SHARE, Statistics, Step, TOUCHING_SHARE,
 };
 use super::obstacle::{Obstacle, velocity};
 use crate::columns::{row, set_row};
@@ -36,6 +36,8 @@ pub struct ContactPhase {
     rebounds: Vec<f64>,
     /// Impacts of particles that constraints hold.
     held: Vec<PointImpact>,
+    /// What has moved such particles in this step.
+    rubs: Vec<([usize; 2], Rub)>,
 }
 
 /// Particles that are struck at the end of a step, before its other contacts are resolved.
@@ -59,6 +61,7 @@ impl ContactPhase {
             struck: Struck::default(),
             rebounds: Vec::with_capacity(dim / 6),
             held: vec![],
+            rubs: vec![],
         }
     }
 
@@ -133,6 +136,9 @@ impl ContactPhase {
         let Struck { particles: struck, impulse, held } = &mut self.struck;
         struck.sort_unstable();
         let masses = Masses { inverse: bodies.inverse_masses, struck, rebound: !bodies.are_struck };
+        if !bodies.are_struck {
+            self.rubs.clear();
+        }
         let mut last = Statistics::default();
         let noted = &mut Noted {
             statistics: &mut last,
@@ -140,6 +146,7 @@ impl ContactPhase {
             rebounds: &mut self.rebounds,
             joints: bodies.joints.filter(|_| y1.len() == 6 * bodies.inverse_masses.len()),
             held: &mut self.held,
+            rubs: &mut self.rubs,
         };
         resolve_noting(obstacles, &masses, &step, y1, noted);
         let held = std::mem::take(held);
@@ -178,6 +185,7 @@ impl ContactPhase {
             rebounds: &mut self.rebounds,
             joints: bodies.joints.filter(|_| y1.len() == 6 * n),
             held: &mut self.struck.held,
+            rubs: &mut self.rubs,
         };
         noted.held.clear();
         let (x, v) = y1.split_at_mut(3 * n);
@@ -266,6 +274,7 @@ pub fn resolve(
         rebounds: &mut vec![],
         joints: None,
         held: &mut vec![],
+        rubs: &mut vec![],
     };
     resolve_noting(obstacles, &masses, step, y1, noted);
     statistics

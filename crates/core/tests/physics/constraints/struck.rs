@@ -225,6 +225,32 @@ fn beads_rebound_from_balls_at_any_angle() {
     }
 }
 
+/// A ladder leans on a smooth wire with its foot on a rough floor: for a rod of equal masses that
+/// needs the friction tan(angle) / 2, and no more. With less it slides.
+#[test]
+fn the_foot_of_a_ladder_stays_where_friction_holds_it() {
+    let moved = |friction: f64, method| {
+        let scene = format!(
+            "gravity = [0, -{G}, 0]
+            floor = {{ height = 0, friction = {friction} }}
+            [particles]
+            positions = [[0, 0.8, 0], [0.6, 0, 0]]
+            mass = 1
+            [[constraint]]
+            rod = [0, 1]
+            [[constraint]]
+            particle = 0
+            line = {{ point = [0, 0, 0], direction = [0, 1, 0] }}"
+        );
+        (of(run(&scene, method, 0.9).state(), 1)[0] - vector(0.6, 0.0, 0.0)).norm()
+    };
+    let loose = [("dopri5", Control::Tolerance(1e-4)), ("dop853", Control::Tolerance(1e-6))];
+    for method in all().into_iter().chain(loose) {
+        let [held, sliding] = [0.4, 0.35].map(|friction| moved(friction, method));
+        assert!(held < 2e-4 && sliding > 0.2, "{}: {held:e} m, {sliding} m", method.0);
+    }
+}
+
 /// A rod of two particles of 1 kg falls along the side of a box, which its lower end touches, and
 /// its upper end strikes the top. The box holds the lower end while that is struck: with the speeds
 /// s of the upper end upwards and r across, the ends have the velocities (0, r - 1) and (-r, s),
