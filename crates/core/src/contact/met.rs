@@ -89,13 +89,13 @@ pub(super) struct Rub {
 
 impl Rub {
     /// Adds a depth (m) to which the particle went in, and the friction that holds it back from a
-    /// slip (m). Returns the displacement by friction, or `None` if it sticks.
+    /// slip (m). Returns the part of the slip that it takes, or `None` if the particle sticks.
     fn hold(&mut self, slip: Vector3<f64>, depth: f64, friction: f64) -> Option<Vector3<f64>> {
-        // A particle on the surface may be moved inwards, by rounding: friction is 0 then.
         self.pressed += depth.max(0.0);
         let (before, wanted) = (self.rubbed, self.rubbed - slip);
-        self.rubbed = wanted.cap_magnitude(friction * self.pressed);
-        (self.rubbed != wanted).then(|| self.rubbed - before)
+        let kept = kept(wanted, friction * self.pressed);
+        self.rubbed = wanted * (1.0 - kept);
+        (kept > 0.0).then(|| before - self.rubbed)
     }
 }
 
@@ -306,7 +306,7 @@ impl Met<'_> {
                 let rub = if is_held { noted.rub([i, self.number]) } else { rub };
                 let held = match rub.hold(slip, depth, self.friction) {
                     None => surface(touched - c).map_or(touched, |nearest| c + nearest.point),
-                    Some(change) => row(x, n, i) + change,
+                    Some(taken) => row(x, n, i) - taken,
                 };
                 set_row(x, n, i, held);
             }
@@ -528,10 +528,15 @@ impl Met<'_> {
     /// Returns the share of a slip along the surface that friction leaves, where contact changed
     /// the motion along the normal by `normal`.
     fn kept(&self, slip: Vector3<f64>, normal: f64) -> f64 {
-        // A particle on the surface may be moved inwards, by rounding: friction is 0 then.
-        let (slip, most) = (slip.norm(), self.friction * normal.max(0.0));
-        if slip > most { 1.0 - most / slip } else { 0.0 }
+        kept(slip, self.friction * normal.max(0.0))
     }
+}
+
+/// Returns the share of a slip that friction leaves, if it takes at most that much. A particle on
+/// the surface may be moved inwards, by rounding: friction is 0 then.
+fn kept(slip: Vector3<f64>, most: f64) -> f64 {
+    let slip = slip.norm();
+    if slip > most { 1.0 - most / slip } else { 0.0 }
 }
 
 /// Returns the place (m) at which a particle touches the obstacle on its straight way from
