@@ -18,7 +18,8 @@ pub(super) fn pass_on(
     (inverse_masses, step): (&[f64], &Step),
     y1: &mut [f64],
 ) {
-    let Some(joints) = noted.joints else {
+    let Some(joints) = noted.joints.filter(|_| !(noted.held.is_empty() && struck.is_empty()))
+    else {
         return;
     };
     let n = inverse_masses.len();
