@@ -9,9 +9,9 @@ use super::response::{JoinedBodies, Joints, Tie};
 use super::solids::Field;
 use crate::columns::{row, set_row};
 
-/// Applies the noted impacts to y1, the end of a step, with what constraints pass on: first the
-/// contact that lasts for the step; then what rebounds within the step or is `struck` at its end,
-/// which may push what touches already.
+/// Applies the noted impacts to y1, the end of a step, with the impulses of the constraints: first
+/// the contacts that last for the step; then the rebounds within the step and the impacts at its
+/// end, `struck`, in order of time, each together with the lasting contacts.
 pub(super) fn pass_on(
     noted: &mut Noted,
     struck: Vec<PointImpact>,
@@ -25,7 +25,7 @@ pub(super) fn pass_on(
     let n = inverse_masses.len();
     let (rebounds, lasting): (Vec<_>, Vec<_>) =
         noted.held.drain(..).partition(|impact| impact.left > 0.0);
-    // What strikes an obstacle touches it at the end of the step only.
+    // A particle that strikes an obstacle at the end of the step did not touch it before.
     let strikes = |impact: &PointImpact| {
         let own = |it: &PointImpact| (it.particle, it.obstacle);
         struck.iter().any(|it| own(it) == own(impact))
@@ -54,8 +54,8 @@ pub(super) fn pass_on(
     }
 }
 
-/// Applies impacts at one time to y1, the end of a step. Notes how much what constraints pass on
-/// differs from that at the end of the step.
+/// Applies impacts at one time to y1, the end of a step. Notes how much the velocities would differ
+/// if the constraints lay as they do at the end of the step.
 fn apply(
     noted: &mut Noted,
     (joints, impacts): (&dyn Joints, &[PointImpact]),

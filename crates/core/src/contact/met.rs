@@ -73,12 +73,13 @@ pub(super) struct Noted<'a> {
     /// have changed no velocity yet.
     pub joints: Option<&'a dyn Joints>,
     pub held: &'a mut Vec<PointImpact>,
-    /// What moved such particles in all turns of the step, with the numbers of particle and
-    /// obstacle.
+    /// Displacements of such particles by obstacles in the step so far, with the numbers of
+    /// particle and obstacle.
     pub rubs: &'a mut Vec<([usize; 2], Rub)>,
 }
 
-/// Displacements of a particle by an obstacle in all turns of a step.
+/// Displacements of a particle by an obstacle in one step, in which contact and constraints move it
+/// in turns.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rub {
     /// Along the normals (m).
@@ -161,7 +162,8 @@ impl Noted<'_> {
         }
     }
 
-    /// Returns what an obstacle has done to a particle in earlier turns, given the numbers of both.
+    /// Returns the displacements of a particle by an obstacle in the step so far, given the numbers
+    /// of both.
     fn rub(&mut self, own: [usize; 2]) -> &mut Rub {
         let known = self.rubs.iter().position(|(it, _)| *it == own);
         let at = known.unwrap_or(self.rubs.len());
@@ -301,7 +303,7 @@ impl Met<'_> {
             if self.friction > 0.0 {
                 let touched = touched([carried, at], [depth, approach]);
                 let slip = across(row(x, n, i) - touched, nearest.normal);
-                // Friction in all turns of the step is within the cone of all that pressed.
+                // Coulomb's law holds for the sums of these displacements over the step.
                 let rub = &mut Rub::default();
                 let rub = if is_held { noted.rub([i, self.number]) } else { rub };
                 let held = match rub.hold(slip, depth, self.friction) {

@@ -36,7 +36,7 @@ pub struct ContactPhase {
     rebounds: Vec<f64>,
     /// Impacts of particles that constraints hold.
     held: Vec<PointImpact>,
-    /// What has moved such particles in this step.
+    /// Displacements of such particles by obstacles in this step.
     rubs: Vec<([usize; 2], Rub)>,
 }
 
@@ -104,9 +104,9 @@ impl ContactPhase {
 
     /// Returns an upper bound of the impulses (N s) that held particles back in the last step: for
     /// each particle that got an impulse, its magnitude or, if larger, the force f on it (N, n x 3)
-    /// times the step. An implicit method foresees how particles give way to a force, so that a
-    /// small impulse stops what is left of their motion, although an obstacle holds all of the
-    /// force.
+    /// times the step. An implicit method takes account of the stiffness of the springs: the
+    /// velocity into the obstacle at the end of its step, and so the impulse that stops it, is
+    /// smaller than the force on the particle times the step.
     pub(crate) fn reaction(&self, f: &[f64]) -> f64 {
         let mut held = vec![0.0; f.len()];
         self.add_forces(&mut held);
@@ -335,8 +335,9 @@ fn resolve_noting(
     }
 }
 
-/// Lists the contacts of particles that constraints hold and that just touch an obstacle at both
-/// ends of a step: what is struck elsewhere may push them.
+/// Lists the contacts of particles that constraints hold and that are on the surface of an
+/// obstacle, up to rounding, at both ends of a step. Where another particle of the same constraints
+/// is struck, its impulse may press them against that surface.
 fn touching(
     obstacles: &[Obstacle],
     noted: &Noted,
