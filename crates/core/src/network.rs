@@ -29,7 +29,7 @@ pub(crate) use holding::{contradiction, project, project_velocities};
 pub(crate) use jump::{Jump, Least, fit, tighten};
 pub(crate) use jump::{
     add, has_ropes, is_held, least_tension, open_ends, pass_on, pulls, ropes_of, set_taut, settle,
-    slack, slacken, taut,
+    slack, slacken, taut, tensions,
 };
 pub(crate) use outflow::{drained, entered, go_back, outflows, set_drained};
 pub use parts::Network;

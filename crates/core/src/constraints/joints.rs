@@ -302,27 +302,35 @@ pub(crate) fn set_all_taut(constraints: &mut Constraints, taut: &[usize]) {
     }
 }
 
-/// Returns the number of the taut rope with the least tension, and that tension divided by a
-/// positive number that is its own: it is negative for a rope that would have to push. `motion`,
-/// `turning` and the other forces f (N) are those of [`Constraints::add_forces`].
-pub(crate) fn least_tension(
+/// Lists the numbers of the taut ropes and of the held ends of joints, and the tension of each,
+/// divided by a positive number that is its own: it is negative for a rope that would have to push.
+/// `motion`, `turning` and the other forces f (N) are those of [`Constraints::add_forces`].
+pub(crate) fn tensions(
     constraints: &Constraints,
     motion: impl Fn(usize, &[f64]) -> (f64, Vector3<f64>),
     turning: impl Fn(usize, &[f64]) -> Turning,
     state: [&[f64]; 2],
     f: &[f64],
-) -> Option<(usize, f64)> {
+) -> Vec<(usize, f64)> {
     constraints.scratch.lend(|system| {
         constraints.find_multipliers(motion, turning, state, f, system);
-        least(constraints, system)
+        found(constraints, system).collect()
     })
 }
 
-pub(super) fn least(constraints: &Constraints, system: &System) -> Option<(usize, f64)> {
+/// Lists the tensions of a solved system, as [`tensions`] does.
+pub(super) fn found(
+    constraints: &Constraints,
+    system: &System,
+) -> impl Iterator<Item = (usize, f64)> {
     let rows = system.rows.iter().zip(&constraints.owners);
     let taut = rows.filter(|(_, (owner, _))| {
         constraints.all[*owner].is_one_sided() && constraints.holds[*owner]
     });
-    let tensions = taut.map(|(row, (owner, _))| (*owner, -row.multiplier));
-    tensions.min_by(|a, b| a.1.total_cmp(&b.1))
+    taut.map(|(row, (owner, _))| (*owner, -row.multiplier))
+}
+
+/// Returns the least of some tensions.
+pub(crate) fn least(tensions: impl IntoIterator<Item = (usize, f64)>) -> Option<(usize, f64)> {
+    tensions.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
 }

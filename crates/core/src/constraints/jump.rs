@@ -18,7 +18,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::constraint::{Constraint, Equation};
 use super::joint::Stop;
-use super::joints::least;
+use super::joints::{found, least};
 use super::set::{Constraints, Moved, vector};
 use super::solve::{System, Turning};
 use crate::error::{ConstraintName, Unmet};
@@ -63,7 +63,7 @@ pub(crate) fn jump(
             let own = struck.iter().find(|struck| struck.number == owner);
             -rate - own.map_or(0.0, |struck| struck.speed)
         });
-        match least(constraints, &system).filter(|(_, tension)| *tension < 0.0) {
+        match least(found(constraints, &system)).filter(|(_, tension)| *tension < 0.0) {
             Some((number, _)) => constraints.holds[number] = false,
             None => break,
         }
@@ -83,14 +83,14 @@ pub(crate) fn jump(
     effects(constraints, &system, &impulses)
 }
 
-/// Returns the effects of an impulse along the row of each taut rope, and of each held end of a
-/// joint, in the state (x, v). `weight` and `turning` are those of [`jump`].
+/// Returns the numbers of the taut ropes and of the held ends of joints, and the effects of an
+/// impulse along the row of each, in the state (x, v). `weight` and `turning` are those of [`jump`].
 pub(crate) fn pulls(
     constraints: &Constraints,
     weight: impl Fn(usize) -> f64,
     turning: impl Fn(usize) -> Turning,
     state: [&[f64]; 2],
-) -> Vec<Vec<Pushed>> {
+) -> Vec<(usize, Vec<Pushed>)> {
     let mut system = System::default();
     constraints.prepare(&mut system, weight, turning);
     constraints.build(state, &mut system, None, |_, _, _, _, _| 0.0);
@@ -98,10 +98,10 @@ pub(crate) fn pulls(
     let taut = rows.filter(|(row, (owner, _))| {
         constraints.all[*owner].is_one_sided() && constraints.holds[*owner] && !row.is_left_out()
     });
-    taut.map(|(row, _)| {
+    taut.map(|(row, (owner, _))| {
         let mut impulses = vec![Vector3::zeros(); constraints.moved.len()];
         row.spread(1.0, &mut impulses);
-        effects(constraints, &system, &impulses)
+        (*owner, effects(constraints, &system, &impulses))
     })
     .collect()
 }

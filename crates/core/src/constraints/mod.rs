@@ -25,8 +25,8 @@ pub use constraint::Constraint;
 pub(crate) use constraint::Projected;
 pub use joint::{Joint, JointKind, Stop};
 pub(crate) use joints::{
-    OneSided, beyond, has_ropes, hold_at_ends, least_tension, loosen, open_ends, rates,
-    set_all_taut, set_taut, taut,
+    OneSided, beyond, has_ropes, hold_at_ends, least, loosen, open_ends, rates, set_all_taut,
+    set_taut, taut, tensions,
 };
 pub(crate) use joints::{joints, multipliers, nearest, project};
 pub(crate) use jump::{Pushed, Struck, jump, pulls};

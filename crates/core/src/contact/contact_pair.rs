@@ -51,6 +51,26 @@ struct Rolling {
     inertia: Matrix3<f64>,
     /// Angular velocity of an obstacle, with the sign of its side (rad/s).
     obstacle: Vector3<f64>,
+    /// Changes by angular impulses about all axes, if constraints pass them on.
+    responses: Vec<Response>,
+}
+
+impl Rolling {
+    /// Lets constraints pass angular impulses on.
+    fn join(&mut self, joined: JoinedBodies, solids: &[Solid], arms: &[Option<Arm>; 2]) {
+        let arms = || arms.iter().flatten();
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+        self.responses = axes.map(|axis| Response::to_turn(joined, solids, axis, arms())).into();
+        let turned = self.responses.iter().zip(axes).map(|(response, axis)| {
+            let mut field = Field::still(joined.y.len(), solids.len());
+            response.push(axis, &mut field);
+            arms().fold(Vector3::zeros(), |sum, arm| sum + arm.turn(&field))
+        });
+        let yields = Matrix3::from_columns(&turned.collect::<Vec<_>>());
+        // A hinge leaves one axis.
+        let least = LEAST_MOBILITY * yields.norm();
+        self.inertia = yields.pseudo_inverse(least).unwrap_or_default();
+    }
 }
 
 impl ContactPair {
@@ -146,12 +166,12 @@ impl ContactPair {
         let left = self.normal.dot(&(mobility * self.normal));
         let is_free = left > LEAST_MOBILITY * self.inverse_mass;
         self.inverse_mass = if is_free { left } else { 0.0 };
-        self.directed = Some(Box::new(Directed {
-            arms: self.both_arms(),
-            mobility,
-            rolling: self.directed.take().and_then(|directed| directed.rolling),
-            responses,
-        }));
+        let arms = self.both_arms();
+        let mut rolling = self.directed.take().and_then(|directed| directed.rolling);
+        if let Some(rolling) = &mut rolling {
+            rolling.join(joined, solids, &arms);
+        }
+        self.directed = Some(Box::new(Directed { arms, mobility, rolling, responses }));
     }
 
     /// Lets rigid bodies get back a part of the separation that they lack.
@@ -176,6 +196,7 @@ impl ContactPair {
             most,
             inertia: yields.try_inverse().unwrap_or_default(),
             obstacle: spin(self.points[0]) - spin(self.points[3]),
+            responses: vec![],
         });
     }
 
@@ -198,7 +219,12 @@ impl ContactPair {
 
     /// Gives the first side an angular impulse (N m s), and the opposite to the second.
     pub fn spin(&self, impulse: Vector3<f64>, field: &mut Field) {
-        for arm in self.arms() {
+        let rolling = self.directed.as_ref().and_then(|it| it.rolling.as_ref());
+        let responses = rolling.map_or(&[][..], |rolling| &rolling.responses);
+        for response in responses {
+            response.push(impulse, field);
+        }
+        for arm in self.arms().filter(|_| responses.is_empty()) {
             arm.spin(impulse, field);
         }
     }
@@ -224,6 +250,11 @@ impl ContactPair {
     /// Returns whether a side is a rigid body.
     pub fn is_rigid(&self) -> bool {
         self.arms().next().is_some()
+    }
+
+    /// Returns whether its mobility depends on the direction.
+    pub fn is_directed(&self) -> bool {
+        self.directed.is_some()
     }
 
     /// Returns the numbers of the rigid bodies that touch.
@@ -274,9 +305,13 @@ impl ContactPair {
         }
     }
 
-    /// Changes the relative vector of the closest points by `change`, along it.
+    /// Changes the relative vector of the closest points by `change`, along it, unless constraints
+    /// leave them no way to move there.
     pub fn apply(&self, change: Vector3<f64>, inverse_masses: &[f64], field: &mut Field) {
-        self.push(change / self.mobility(change), inverse_masses, field);
+        let mobility = self.mobility(change);
+        if mobility > 0.0 {
+            self.push(change / mobility, inverse_masses, field);
+        }
     }
 
     /// Gives the first primitive an impulse (N s), and the opposite to the second. The points of

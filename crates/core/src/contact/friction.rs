@@ -1,10 +1,9 @@
-//! Friction of the pairs that the contact force keeps apart in a step.
-//!
-//! Passes of friction over the velocities of contacts.
+//! Friction of the pairs that the contact force keeps apart in a step, by passes over the
+//! velocities of contacts. Constraints pass it on, as they do impulses of impacts.
 //!
 //! Each contact changes velocities that the next ones read, so a processor would wait for the end
-//! of one computation before it begins the next. Therefore contacts without rigid bodies are in the
-//! order of a greedy colouring, in which those that move the same vertex have different colours:
+//! of one computation before it begins the next. Therefore contacts of particles are in the order
+//! of a greedy colouring, in which those that move the same vertex have different colours:
 //! most neighbours then do not interact.
 
 #![expect(
@@ -23,10 +22,12 @@ use super::impulse::limited_to;
 use super::listing::Candidate;
 use super::motion::{Guarded, Motion};
 use super::repulsion::Pair;
-use super::solids::Field;
+use super::response::{JoinedBodies, Tie};
+use super::solids::{Field, Solid};
 use super::surface::Surface;
 use crate::error::Vertex;
 use crate::geometry::weighted;
+use crate::interval::Interval;
 use crate::vectors::Arch;
 
 /// Share of the largest displacement that friction can undo below which a displacement counts as
@@ -36,11 +37,11 @@ const STILL_TOLERANCE: f64 = 1e-10;
 /// Number of most recent contacts of two bodies among which one at the same point is searched for.
 const SEARCHED_CONTACTS: usize = 32;
 
-/// Applies friction to the pairs that the contact force keeps apart at the end of the step. Returns
-/// whether there were any.
+/// Applies friction to the pairs that the contact force keeps apart at the end of a step of h (s).
+/// Returns whether there were any.
 pub(super) fn apply_friction(
     surface: &Surface,
-    h: f64,
+    (h, joined): (f64, Option<JoinedBodies>),
     candidates: &mut Candidates,
     motion: &mut Motion,
     guarded: &mut Guarded,
@@ -72,7 +73,22 @@ pub(super) fn apply_friction(
     if pressed.contacts.is_empty() {
         return false;
     }
-    solve(&pressed, h, motion, guarded);
+    let mut ties = vec![];
+    if let Some(joined) = joined {
+        let (masses, solids) = (&motion.inverse_masses, &motion.solids);
+        let contacts = pressed.contacts.iter_mut().map(|(contact, _)| contact);
+        let held = contacts.filter_map(|contact| {
+            contact.join(joined, false, masses, solids);
+            contact.is_joined().then_some(())
+        });
+        if held.count() > 0 {
+            let [t, end] = motion.times;
+            let step = Interval { t, h: end - t };
+            ties = Tie::all(joined, solids, &motion.v, Some(step));
+            ties.iter_mut().for_each(Tie::read_velocities);
+        }
+    }
+    solve(&pressed, (h, &mut ties), motion, guarded);
     motion.cover(surface, candidates);
     true
 }
@@ -108,8 +124,13 @@ impl Pressed {
 }
 
 /// Finds the friction of contacts, each with its largest impulse (N s): of velocities first.
-/// Displacements follow the velocities, and vanish where these do.
-fn solve(pressed: &Pressed, h: f64, motion: &mut Motion, guarded: &mut Guarded) {
+/// Displacements follow the velocities, and vanish where these do. Ropes and ends of joints pull.
+fn solve(
+    pressed: &Pressed,
+    (h, ties): (f64, &mut [Tie]),
+    motion: &mut Motion,
+    guarded: &mut Guarded,
+) {
     let (pressed, spins) = (&pressed.contacts, &pressed.spins);
     let Motion { x0, moves, v0, v, inverse_masses, solids, impulses, .. } = motion;
     // Displacement per change of velocity in the step: half of the step for most methods, all of it
@@ -130,7 +151,11 @@ fn solve(pressed: &Pressed, h: f64, motion: &mut Motion, guarded: &mut Guarded) 
         [slips, turns].map(|[begun, end, way]| delay(begun, end, way))
     };
     let delays: Vec<[f64; 2]> = pressed.iter().map(delays).collect();
-    let (all, turned) = hold(pressed, inverse_masses, v);
+    let (all, turned) = hold(pressed, ties, (inverse_masses, solids), v);
+    let latest = delays.iter().map(|[delay, _]| *delay).fold(0.0, f64::max);
+    for tie in ties {
+        tie.push(latest, moves);
+    }
     for (k, (contact, _)) in pressed.iter().enumerate() {
         contact.push(all[k] * delays[k][0], inverse_masses, moves);
         contact.spin(turned[k] * delays[k][1], moves);
@@ -231,9 +256,10 @@ fn pass_until_still(mut pass: impl FnMut() -> bool) {
 /// Lets friction stop the slip of contacts, each with its largest impulse (N s), by changes of the
 /// velocities v (m/s), and the turns of those that resist them. Returns the impulse (N s) and the
 /// angular impulse (N m s) of each. The points of rigid bodies must be settled afterwards.
-pub(super) fn hold(
+fn hold(
     contacts: &[(ContactPair, f64)],
-    inverse_masses: &[f64],
+    ties: &mut [Tie],
+    (inverse_masses, solids): (&[f64], &[Solid]),
     v: &mut Field,
 ) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
     // Impulses of each contact so far, which a later pass may reduce.
@@ -242,12 +268,14 @@ pub(super) fn hold(
     let numbers = in_order(contacts, inverse_masses);
     let mut soft: Vec<_> =
         numbers.iter().map(|number| Soft::new(&contacts[*number], inverse_masses)).collect();
-    let rigid: Vec<_> = (0..contacts.len()).filter(|k| contacts[*k].0.is_rigid()).collect();
+    let directed: Vec<_> = (0..contacts.len()).filter(|k| contacts[*k].0.is_directed()).collect();
+    let fastest = contacts.iter().map(|(contact, most)| most * contact.inverse_mass);
+    let fastest = fastest.fold(0.0, f64::max);
     pass_until_still(|| {
         let points = &mut v.points;
 
         let mut still = Arch::new().dispatch(FrictionPass { contacts: &mut soft, v: points });
-        for k in &rigid {
+        for k in &directed {
             let (contact, most) = &contacts[*k];
             let slip = contact.slip(v);
             let held = contact.held(all[*k], slip, *most);
@@ -263,6 +291,9 @@ pub(super) fn hold(
                 still &= change.norm() <= STUCK_TOLERANCE * most;
             }
         }
+        for tie in &mut *ties {
+            still &= tie.press(v, solids) <= STUCK_TOLERANCE * fastest;
+        }
         still
     });
     for (number, contact) in numbers.iter().zip(&soft) {
@@ -271,12 +302,13 @@ pub(super) fn hold(
     (all, turned)
 }
 
-/// Lists the numbers of the contacts without rigid bodies, in the order of their colours.
+/// Lists the numbers of the contacts whose mobility does not depend on the direction, in the order
+/// of their colours.
 fn in_order(contacts: &[(ContactPair, f64)], inverse_masses: &[f64]) -> Vec<usize> {
     let mut used = vec![0_u64; inverse_masses.len()];
     let mut keys = vec![];
     for (number, (contact, _)) in contacts.iter().enumerate() {
-        if contact.is_rigid() {
+        if contact.is_directed() {
             continue;
         }
         let points = contact.points.map(|i| i as usize);
@@ -292,7 +324,7 @@ fn in_order(contacts: &[(ContactPair, f64)], inverse_masses: &[f64]) -> Vec<usiz
     keys.into_iter().map(|(_, number)| number).collect()
 }
 
-/// Contact without rigid bodies.
+/// Contact whose mobility does not depend on the direction: without rigid bodies or constraints.
 struct Soft {
     weights: [f64; 4],
     /// Weights times inverse masses (1/kg).
@@ -321,7 +353,7 @@ impl Soft {
     }
 }
 
-/// Pass over contacts without rigid bodies.
+/// Pass over such contacts.
 struct FrictionPass<'a> {
     contacts: &'a mut [Soft],
     v: &'a mut [Vector3<f64>],

@@ -55,7 +55,9 @@ pub(crate) fn guard(
     y1: &mut [f64],
     impulses: &mut Impulses,
 ) -> Result<Guarded, Pinched> {
-    impulses.clear();
+    if !bodies.are_struck {
+        impulses.clear();
+    }
     layer.scratch.lend(|buffers| {
         std::mem::swap(impulses, &mut buffers.motion.impulses);
         let guarded = guard_with(layer, buffers, bodies, Interval { t, h }, y0, y1);
@@ -97,14 +99,16 @@ fn guard_with(
     motion.take_planes();
     let mut guarded = Guarded::default();
     motion.cover(surface, candidates);
-    let mut changed = apply_friction(surface, h, candidates, motion, &mut guarded);
+    let joined = bodies.joints.map(|joints| JoinedBodies { joints, y: y1 });
+    // Friction counts once in a step, whatever constraints move after it.
+    let mut changed = !bodies.are_struck
+        && apply_friction(surface, (h, joined), candidates, motion, &mut guarded);
     if surface.is_rigid_or_elastic() {
         let Motion { flight, v0, v, moves, .. } = motion;
         flight.read(h, bodies.may_lag, [v0, v, moves]);
         if bodies.are_struck {
             flight.straighten();
         }
-        let joined = bodies.joints.map(|joints| JoinedBodies { joints, y: y1 });
         changed |= strike(surface, (h, joined), candidates, motion, &mut guarded);
     }
     let mut rounds = 0;

@@ -8,6 +8,7 @@ use super::met::{Noted, PointImpact, SIMULTANEOUS_SHARE, Step};
 use super::response::{JoinedBodies, Joints, Tie};
 use super::solids::Field;
 use crate::columns::{row, set_row};
+use crate::interval::Interval;
 
 /// Applies the noted impacts to y1, the end of a step, with the impulses of the constraints: first
 /// the contacts that last for the step; then the rebounds within the step and the impacts at its
@@ -85,7 +86,11 @@ fn apply(
     for i in 0..n {
         before[i] = row(&y1[3 * n..], n, i);
     }
-    let mut ties = Tie::all(JoinedBodies { joints, y: y1 }, &[], &before);
+    // What is sudden has a time after it, or acts at the end.
+    let lasts = impacts.iter().all(|impact| impact.left == 0.0 && impact.share < 1.0);
+    let times = Interval { t: step.t, h: step.h };
+    let mut ties =
+        Tie::all(JoinedBodies { joints, y: y1 }, &[], &before, Some(times).filter(|_| lasts));
     let mut changes = Field::still(n, 0);
     let moving = (inverse_masses, &[][..]);
     solve(blows.iter_mut(), &mut ties, &mut changes, moving);

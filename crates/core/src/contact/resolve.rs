@@ -299,7 +299,9 @@ fn resolve_noting(
     noted: &mut Noted,
 ) {
     let n = masses.inverse.len();
-    noted.impulses.clear();
+    if masses.rebound {
+        noted.impulses.clear();
+    }
     noted.rebounds.clear();
     noted.held.clear();
     for (number, obstacle) in obstacles.iter().enumerate() {

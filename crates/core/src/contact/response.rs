@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 
 use super::solids::{Arm, Field, Solid};
 use crate::constraints::{Moved, Pushed};
+use crate::interval::Interval;
 use crate::rigid::{ROTATION, Rotation};
 
 /// Constraints of a network.
@@ -21,9 +22,13 @@ pub(crate) trait Joints {
     /// joints.
     fn fit(&self, y: &mut [f64]);
 
-    /// Returns the effects of an impulse of each rope at its length, and of each joint at an end,
-    /// in the state y.
-    fn pulls(&self, y: &[f64]) -> Vec<Vec<Pushed>>;
+    /// Returns the numbers of the ropes at their lengths and of the joints at an end, and the
+    /// effects of an impulse of each, in the state y.
+    fn pulls(&self, y: &[f64]) -> Vec<(usize, Vec<Pushed>)>;
+
+    /// Returns the numbers of those that are taut, and such an impulse of each in a second, by the
+    /// forces in the state y at time t (s).
+    fn tensions(&self, t: f64, y: &[f64]) -> Vec<(usize, f64)>;
 
     /// Adds these effects to the velocities in the state y.
     fn push(&self, effects: &[Pushed], y: &mut [f64]);
@@ -90,6 +95,32 @@ impl Effect {
         }
     }
 
+    /// Returns the changes by the constraints and by these: of the velocities of the centres of
+    /// bodies (m/s) and of their angular momenta (kg m2/s), and of the velocities of points (m/s).
+    fn passed_on(
+        joined: JoinedBodies,
+        solids: &[Solid],
+        on_bodies: impl Iterator<Item = (usize, [Vector3<f64>; 2])>,
+        on_points: impl Iterator<Item = (usize, Vector3<f64>)>,
+    ) -> Self {
+        let (mut y, n) = joined.still(solids);
+        let mut momenta = vec![Vector3::zeros(); solids.len()];
+        let of_centers = on_bodies.map(|(k, [change, turned])| {
+            momenta[k] += turned;
+            (solids[k].center, change)
+        });
+        for (i, change) in of_centers.chain(on_points.filter(|(i, _)| *i < n)) {
+            for axis in 0..3 {
+                y[(3 + axis) * n + i] += change[axis];
+            }
+        }
+        for (k, momentum) in momenta.into_iter().enumerate() {
+            write_momentum(&mut y, n, k, momentum);
+        }
+        joined.joints.fit(&mut y);
+        Self::read(&y, n, solids)
+    }
+
     /// Returns the impulses and angular impulses of a constraint.
     fn of(pushed: &[Pushed], solids: &[Solid]) -> Self {
         let (mut points, mut parts) = (vec![], vec![[Vector3::zeros(); 2]; solids.len()]);
@@ -128,7 +159,7 @@ impl Effect {
     }
 }
 
-/// Changes by an impulse of 1 N s in a direction.
+/// Changes by an impulse of 1 N s, or an angular one of 1 N m s, in a direction.
 pub(super) struct Response {
     direction: Vector3<f64>,
     effect: Effect,
@@ -144,26 +175,23 @@ impl Response {
         arms: impl Iterator<Item = &'a Arm>,
         pushed: impl Iterator<Item = (usize, Vector3<f64>)>,
     ) -> Self {
-        let (mut y, n) = joined.still(solids);
-        let add = |y: &mut [f64], i: usize, change: Vector3<f64>| {
-            for axis in 0..3 {
-                y[(3 + axis) * n + i] += change[axis];
-            }
+        let pushes = |arm: &Arm| {
+            let impulse = direction * arm.sign;
+            (arm.solid, [impulse * arm.inverse_mass, arm.lever.cross(&impulse)])
         };
-        let mut momenta = vec![Vector3::zeros(); solids.len()];
-        for arm in arms {
-            let (k, impulse) = (arm.solid, direction * arm.sign);
-            add(&mut y, solids[k].center, impulse * arm.inverse_mass);
-            momenta[k] += arm.lever.cross(&impulse);
-        }
-        for (i, change) in pushed.filter(|(i, _)| *i < n) {
-            add(&mut y, i, change);
-        }
-        for (k, momentum) in momenta.into_iter().enumerate() {
-            write_momentum(&mut y, n, k, momentum);
-        }
-        joined.joints.fit(&mut y);
-        Self { direction, effect: Effect::read(&y, n, solids) }
+        Self { direction, effect: Effect::passed_on(joined, solids, arms.map(pushes), pushed) }
+    }
+
+    /// Finds the response to an angular impulse of 1 N m s about a direction on the first of two
+    /// arms, and the opposite on the second.
+    pub fn to_turn<'a>(
+        joined: JoinedBodies,
+        solids: &[Solid],
+        direction: Vector3<f64>,
+        arms: impl Iterator<Item = &'a Arm>,
+    ) -> Self {
+        let turns = arms.map(|arm| (arm.solid, [Vector3::zeros(), direction * arm.sign]));
+        Self { direction, effect: Effect::passed_on(joined, solids, turns, std::iter::empty()) }
     }
 
     /// Lists the particles, without those of bodies, whose velocities change.
@@ -171,7 +199,7 @@ impl Response {
         self.effect.points.iter().map(|(i, _)| *i as u32)
     }
 
-    /// Changes a field by an impulse (N s), as far as it is in this direction. The points of the
+    /// Changes a field by an impulse (N s or N m s), as far as it is in this direction. The points of the
     /// bodies must be settled afterwards.
     pub fn push(&self, impulse: Vector3<f64>, field: &mut Field) {
         self.effect.add(self.direction.dot(&impulse), field);
@@ -189,15 +217,29 @@ pub(super) struct Tie {
     /// rate (1/kg).
     effect: Effect,
     mobility: f64,
-    /// Impulse (N s): at most 0.
+    /// Impulse (N s), and the largest one: that which undoes the pull of the rope in the step, or 0.
     pull: f64,
+    most: f64,
 }
 
 impl Tie {
-    /// Lists those of the constraints, with the velocities v (m/s) before the impacts.
-    pub fn all(joined: JoinedBodies, solids: &[Solid], v: &Field) -> Vec<Self> {
+    /// Lists those of the constraints, with the velocities v (m/s) before the impacts. Contact that
+    /// lasts for a time, up to the state of the joined bodies, may take back what the rope has
+    /// pulled in that time.
+    pub fn all(
+        joined: JoinedBodies,
+        solids: &[Solid],
+        v: &Field,
+        lasting: Option<Interval>,
+    ) -> Vec<Self> {
         let pulls = joined.joints.pulls(joined.y);
-        let ties = pulls.iter().map(|pushed| {
+        let taut = lasting.filter(|_| !pulls.is_empty()).map(|Interval { t, h }| {
+            let tensions = joined.joints.tensions(t + h, joined.y);
+            tensions.into_iter().map(move |(number, tension)| (number, tension.max(0.0) * h))
+        });
+        let taut: Vec<_> = taut.into_iter().flatten().collect();
+        let pulled = |number| taut.iter().find(|(own, _)| *own == number);
+        let ties = pulls.iter().map(|(number, pushed)| {
             let (mut y, n) = joined.still(solids);
             joined.joints.push(pushed, &mut y);
             joined.joints.fit(&mut y);
@@ -208,11 +250,17 @@ impl Tie {
                 rate: parts.product(v, solids),
                 mobility: parts.product(&changed, solids),
                 pull: 0.0,
+                most: pulled(*number).map_or(0.0, |(_, impulse)| *impulse),
                 parts,
                 effect,
             }
         });
         ties.filter(|tie| tie.mobility > 0.0).collect()
+    }
+
+    /// Lets [`press`](Self::press) be given velocities in place of their changes by impulses.
+    pub fn read_velocities(&mut self) {
+        self.rate = -self.rate.max(0.0);
     }
 
     /// Forgets the impulse.
@@ -224,7 +272,7 @@ impl Tie {
     /// change of their rate (m/s).
     pub fn press(&mut self, changes: &mut Field, solids: &[Solid]) -> f64 {
         let rate = self.rate.min(0.0) + self.parts.product(changes, solids);
-        let pull = (self.pull - rate / self.mobility).min(0.0);
+        let pull = (self.pull - rate / self.mobility).min(self.most);
         let change = pull - self.pull;
         self.pull = pull;
         self.effect.add(change, changes);

@@ -64,7 +64,7 @@ pub(super) fn strike(
         let mut changes = Field::still(motion.x0.len(), motion.solids.len());
         let is_held = |impact: &Impact| impact.blow.contact.is_joined();
         let held = joined.filter(|_| impacts.iter().any(is_held));
-        let ties = held.map(|joined| Tie::all(joined, &motion.solids, &motion.v));
+        let ties = held.map(|joined| Tie::all(joined, &motion.solids, &motion.v, None));
         let mut ties = ties.unwrap_or_default();
         let blows = impacts.iter_mut().map(|impact| &mut impact.blow);
         let moving = (&motion.inverse_masses[..], &motion.solids[..]);

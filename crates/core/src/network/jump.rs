@@ -156,9 +156,9 @@ pub(crate) fn pass_on(network: &Network, y: &mut [f64]) {
     network.bodies.settle(y);
 }
 
-/// Returns the effects of an impulse of each rope at its length, and of each joint at an end, in
-/// the state y.
-pub(crate) fn pulls(network: &Network, y: &[f64]) -> Vec<Vec<Pushed>> {
+/// Returns the numbers of the ropes at their lengths and of the joints at an end, and the effects of
+/// an impulse of each, in the state y.
+pub(crate) fn pulls(network: &Network, y: &[f64]) -> Vec<(usize, Vec<Pushed>)> {
     if !has_ropes(network) {
         return vec![];
     }
@@ -370,7 +370,14 @@ fn let_go(network: &mut Network, t: f64, y: &[f64]) -> u64 {
 /// Returns the taut rope with the least tension in the state y at time t (s), and a number of the
 /// sign of that tension.
 pub(crate) fn least_tension(network: &Network, t: f64, y: &[f64]) -> Option<(usize, f64)> {
-    rigid::least_tension(network, t, y)
+    constraints::least(tensions(network, t, y))
+}
+
+/// Lists the tensions of taut ropes, and of held ends of joints, in the state y at time t (s), each
+/// with the number of the constraint: the impulse of which [`pulls`] returns the effects, over a
+/// time.
+pub(crate) fn tensions(network: &Network, t: f64, y: &[f64]) -> Vec<(usize, f64)> {
+    if taut(network).next().is_none() { vec![] } else { rigid::tensions(network, t, y) }
 }
 
 /// Returns the ends of joints that are not held in the state y.

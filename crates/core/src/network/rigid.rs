@@ -75,15 +75,15 @@ fn with_other_forces<T>(
     })
 }
 
-/// Returns the taut rope with the least tension in the state y at time t (s); see
-/// [`least_tension`](crate::constraints::least_tension).
-pub(super) fn least_tension(network: &Network, t: f64, y: &[f64]) -> Option<(usize, f64)> {
+/// Lists the tensions of taut ropes in the state y at time t (s); see
+/// [`tensions`](crate::constraints::tensions).
+pub(super) fn tensions(network: &Network, t: f64, y: &[f64]) -> Vec<(usize, f64)> {
     let terms = Terms::AllForces;
     with_other_forces(network, t, terms, y, |x, v, f, [torques, _]| {
         let torques = &*torques;
         let bodies = |k: usize, f: &[f64]| turning(network, k, y, terms, Loads { x, f, torques });
         let motion = |i: usize, f: &[f64]| free_motion(network, t, &bodies, i, f);
-        constraints::least_tension(&network.constraints, motion, |k, f| bodies(k, f).0, [x, v], f)
+        constraints::tensions(&network.constraints, motion, |k, f| bodies(k, f).0, [x, v], f)
     })
 }
 

@@ -17,6 +17,7 @@ use crate::error::Cause;
 use crate::interval::Interval;
 use crate::network::{
     Network, add, has_ropes, is_held, outflows, pass_on, project, project_velocities, pulls,
+    tensions,
 };
 use crate::rigid::ROTATION;
 use crate::scene::Model;
@@ -400,8 +401,12 @@ impl Joints for JointsOf<'_> {
         pass_on(self.network, y);
     }
 
-    fn pulls(&self, y: &[f64]) -> Vec<Vec<Pushed>> {
+    fn pulls(&self, y: &[f64]) -> Vec<(usize, Vec<Pushed>)> {
         pulls(self.network, y)
+    }
+
+    fn tensions(&self, t: f64, y: &[f64]) -> Vec<(usize, f64)> {
+        tensions(self.network, t, y)
     }
 
     fn push(&self, effects: &[Pushed], y: &mut [f64]) {

@@ -7,6 +7,7 @@ mod joint_ends;
 mod jointed;
 mod limits;
 mod motion;
+mod pushed;
 mod struck;
 
 use std::f64::consts::PI;
