@@ -39,6 +39,9 @@ struct Directed {
     /// Change of the relative velocity of the closest points by an impulse (1/kg).
     mobility: Matrix3<f64>,
     rolling: Option<Rolling>,
+    /// Direction of an impulse without friction, if it is not the normal. Its component along the
+    /// normal is 1.
+    push: Option<Vector3<f64>>,
     /// Changes by impulses in all directions that matter, if constraints pass them on.
     responses: Vec<Response>,
 }
@@ -120,6 +123,7 @@ impl ContactPair {
                 arms: *arms,
                 mobility,
                 rolling: None,
+                push: None,
                 responses: vec![],
             }));
         }
@@ -171,7 +175,17 @@ impl ContactPair {
         if let Some(rolling) = &mut rolling {
             rolling.join(joined, solids, &arms);
         }
-        self.directed = Some(Box::new(Directed { arms, mobility, rolling, responses }));
+        self.directed = Some(Box::new(Directed { arms, mobility, rolling, push: None, responses }));
+    }
+
+    /// Lets impulses without friction act in a direction whose component along the normal is 1, if
+    /// constraints pass on impulses in all directions.
+    pub fn push_along(&mut self, push: Vector3<f64>) {
+        if let Some(directed) = self.directed.as_mut().filter(|_| push != self.normal) {
+            directed.push = Some(push);
+            let left = self.normal.dot(&(directed.mobility * push));
+            self.inverse_mass = if self.inverse_mass > 0.0 { left.max(0.0) } else { 0.0 };
+        }
     }
 
     /// Lets rigid bodies get back a part of the separation that they lack.
@@ -353,7 +367,7 @@ impl ContactPair {
             return Vector3::zeros();
         }
         if self.is_rigid() {
-            let least = LeastSpeed { before: Vector3::zeros(), speed: wanted, friction };
+            let least = LeastSpeed::of_impact(Vector3::zeros(), wanted, friction);
             return self.press(Vector3::zeros(), &least, inverse_masses, field);
         }
         let change = change_in_impact(relative, self.normal, 0.0, friction);
@@ -372,15 +386,17 @@ impl ContactPair {
         field: &mut Field,
     ) -> Vector3<f64> {
         let along = so_far.dot(&self.normal);
+        let push = self.directed.as_ref().and_then(|it| it.push).unwrap_or(self.normal);
         let relative = least.before + self.relative(field);
         let lacks = least.speed - relative.dot(&self.normal);
         let pressed = (along + lacks / self.inverse_mass).max(0.0);
-        let mut change = self.normal * (pressed - along);
+        let mut change = push * (pressed - along);
         self.push(change, inverse_masses, field);
         if least.friction > 0.0 {
-            let rubbed = so_far - self.normal * along;
+            let rubbed = so_far - push * along;
             let slip = across(least.before + self.relative(field), self.normal);
-            let more = self.held(rubbed, slip, least.friction * pressed) - rubbed;
+            let most = least.friction * pressed;
+            let more = self.held_along(rubbed, [least.begun, slip], most) - rubbed;
             self.push(more, inverse_masses, field);
             change += more;
         }
@@ -398,11 +414,27 @@ impl ContactPair {
             None => limited_to(so_far - slip / self.inverse_mass, most),
         }
     }
+
+    /// Returns that impulse where the slip was `begun` (m/s) at the beginning of a step and is
+    /// `slip` (m/s) at its end. One that does not stop is held back along the mean of both, or along
+    /// the latter if the slip has reversed within the step.
+    fn held_along(
+        &self,
+        so_far: Vector3<f64>,
+        [begun, slip]: [Vector3<f64>; 2],
+        most: f64,
+    ) -> Vector3<f64> {
+        let held = self.held(so_far, slip, most);
+        let slides = held.norm() >= (1.0 - SAME_TOLERANCE) * most;
+        if slides && begun.dot(&slip) > 0.0 { self.held(so_far, begun + slip, most) } else { held }
+    }
 }
 
 /// Least separation after an impulse.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LeastSpeed {
+    /// Slip at the beginning of a step for which contact lasts (m/s); 0 in an impact.
+    pub begun: Vector3<f64>,
     /// Relative velocity before all impulses (m/s).
     pub before: Vector3<f64>,
     /// Speed along the normal afterwards (m/s).
@@ -412,6 +444,12 @@ pub(super) struct LeastSpeed {
 }
 
 impl LeastSpeed {
+    /// Creates the least speed along the normal after an impact (m/s), with the relative velocity
+    /// before it (m/s) and a coefficient of friction.
+    pub fn of_impact(before: Vector3<f64>, speed: f64, friction: f64) -> Self {
+        Self { begun: Vector3::zeros(), before, speed, friction }
+    }
+
     /// Returns a speed (m/s) that compares with those of the impact.
     pub fn size(&self) -> f64 {
         self.speed.abs() + self.before.norm()

@@ -47,7 +47,8 @@ pub(super) fn pass_on(
         let PointImpact { share, left, .. } = group[0];
         let others = lasting.iter().map(|contact| {
             let before = speed(contact.particle) - contact.carried;
-            let least = LeastSpeed { before, ..contact.least };
+            let LeastSpeed { speed, friction, .. } = contact.least;
+            let least = LeastSpeed::of_impact(before, speed, friction);
             PointImpact { least, share, left, ..contact.clone() }
         });
         let together: Vec<_> = group.iter().cloned().chain(others).collect();
@@ -56,7 +57,8 @@ pub(super) fn pass_on(
 }
 
 /// Applies impacts at one time to y1, the end of a step. Notes how much the velocities would differ
-/// if the constraints lay as they do at the end of the step.
+/// if the constraints lay as they do at the end of the step, and by how much the friction of slides
+/// turns in it.
 fn apply(
     noted: &mut Noted,
     (joints, impacts): (&dyn Joints, &[PointImpact]),
@@ -76,8 +78,9 @@ fn apply(
             for (x, begun) in y[..3 * n].iter_mut().zip(step.y0) {
                 *x += (begun - *x) * (1.0 - impact.share);
             }
-            let is_smooth = impact.least.friction == 0.0;
+            let is_smooth = impact.least.friction == 0.0 && impact.push == impact.normal;
             contact.join(JoinedBodies { joints, y: &y }, is_smooth, inverse_masses, &[]);
+            contact.push_along(impact.push);
             let is_free = impact.least.speed > 0.0;
             Blow::new(contact, impact.least, is_free, impact.carried)
         })
@@ -112,8 +115,9 @@ fn apply(
     }
     joints.fit(&mut end);
     let apart = (0..n).map(|i| (row(&end[3 * n..], n, i) - changes[i]).norm() * step.h);
+    let turned = blows.iter().map(|blow| 0.5 * blow.turned(&changes).norm() * step.h);
     let missed = &mut noted.statistics.missed;
-    *missed = apart.fold(*missed, f64::max);
+    *missed = apart.chain(turned).fold(*missed, f64::max);
     let (x, v) = y1.split_at_mut(3 * n);
     for i in 0..n {
         set_row(x, n, i, row(x, n, i) + moves[i]);

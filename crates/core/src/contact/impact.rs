@@ -8,7 +8,7 @@
 use nalgebra::Vector3;
 
 use super::contact_pair::{ContactPair, LeastSpeed};
-use super::impulse::{rebound_speed, restored};
+use super::impulse::{across, rebound_speed, restored};
 use super::listing::Candidate;
 use super::motion::{Hit, Motion};
 use super::response::{JoinedBodies, Joints, Tie};
@@ -71,6 +71,18 @@ impl Blow {
             let work = self.work(changes) + self.impulse.dot(&self.carried);
             joints.note(self.impulse.norm(), work);
         }
+    }
+
+    /// Returns the difference between the change of velocity by friction (m/s), which is along the
+    /// mean of the slips at both ends of the step, and that along the slip at its end.
+    pub fn turned(&self, changes: &Field) -> Vector3<f64> {
+        let slip = across(self.least.before + self.contact.relative(changes), self.contact.normal);
+        let ways = [self.least.begun, slip].map(|slip| slip.try_normalize(0.0));
+        let [Some(begun), Some(ended)] = ways else {
+            return Vector3::zeros();
+        };
+        let change = across(self.contact.change(self.impulse), self.contact.normal);
+        (ended - begun) * (0.5 * change.norm())
     }
 
     /// Returns the work of the impulse (J) at the relative velocity, with the changes of velocities
@@ -239,7 +251,7 @@ impl Impact {
             contact.wanted =
                 restored(&law, distance) - (1.0 - time) * approach + MARGIN_SHARE * approach.abs();
         }
-        let least = LeastSpeed { before, speed, friction: law.skin.friction };
+        let least = LeastSpeed::of_impact(before, speed, law.skin.friction);
         Some(Self { candidate: *pair, blow: Blow::new(contact, least, is_free, carried), left })
     }
 

@@ -107,6 +107,9 @@ pub(super) struct PointImpact {
     /// Number of the obstacle.
     pub obstacle: usize,
     pub normal: Vector3<f64>,
+    /// Direction in which the obstacle pushes, without friction. Its component along the normal
+    /// is 1.
+    pub push: Vector3<f64>,
     pub least: LeastSpeed,
     /// Velocity of the obstacle there (m/s).
     pub carried: Vector3<f64>,
@@ -119,7 +122,7 @@ pub(super) struct PointImpact {
 impl PointImpact {
     /// Returns the change of the velocity (m/s) of a particle that is free.
     pub fn change(&self) -> Vector3<f64> {
-        let LeastSpeed { before, speed, friction } = self.least;
+        let LeastSpeed { before, speed, friction, .. } = self.least;
         change_in_impact(before, self.normal, speed, friction)
     }
 
@@ -289,7 +292,13 @@ impl Met<'_> {
         let velocity = row(v, n, i) - own;
         let outwards = velocity.dot(&nearest.normal);
         let inwards = outwards.min(0.0);
-        let reaction = self.reaction(i, (at, velocity), nearest.normal, noted);
+        let (up, approach) = (nearest.normal, -inwards);
+        let pushes = approach > 0.0 || is_held;
+        let mean = pushes.then(|| self.push(i, (at, velocity), up)).flatten();
+        let along = |size: f64| mean.map_or(up * size, |mean| mean * (size / mean.dot(&up)));
+        let reaction = along(approach);
+        let missed = &mut noted.statistics.missed;
+        *missed = missed.max((reaction - up * approach).norm() * self.span.h);
         for axis in self.axes.clone() {
             x[axis * n + i] = c[axis] + nearest.point[axis];
             if !is_held {
@@ -333,7 +342,9 @@ impl Met<'_> {
             }
         }
         if is_held {
-            let impact = self.impact(i, nearest.normal, [velocity, own], 0.0);
+            let mut impact = self.impact(i, nearest.normal, [velocity, own], 0.0);
+            impact.push = along(1.0);
+            impact.least.begun = self.begun(i, nearest.normal).unwrap_or_default();
             noted.held.push(impact);
         } else {
             let change = row(v, n, i) - own - velocity;
@@ -430,44 +441,34 @@ impl Met<'_> {
             particle: i,
             obstacle: self.number,
             normal,
-            least: LeastSpeed { before, speed, friction: self.friction },
+            push: normal,
+            least: LeastSpeed::of_impact(before, speed, self.friction),
             carried,
             share: MIDDLE,
             left: 0.0,
         }
     }
 
-    /// Returns the change of the velocity (m/s) by which the obstacle stops the approach of
-    /// particle i along the normal `up`, where the particle ends at x (m) with the velocity
-    /// `relative` to the obstacle (m/s). If it touches from the beginning of the step, the reaction
-    /// acts along the mean of the normals at both ends: on a curved obstacle, or one that turns,
-    /// that is of order 2. Notes the correction, over the step.
-    fn reaction(
+    /// Returns the direction in which the obstacle pushes particle i, if that is not the normal `up`
+    /// at the end of the step, where the particle is at x (m) with the velocity `relative` to the
+    /// obstacle (m/s). If it touches from the beginning of the step, the reaction acts along the
+    /// mean of the normals at both ends: on a curved obstacle, or one that turns, that is of
+    /// order 2.
+    fn push(
         &self,
         i: usize,
         (x, relative): (Vector3<f64>, Vector3<f64>),
         up: Vector3<f64>,
-        noted: &mut Noted,
-    ) -> Vector3<f64> {
-        let approach = -relative.dot(&up).min(0.0);
-        let (straight, shape) = (up * approach, &self.obstacle.shape);
+    ) -> Option<Vector3<f64>> {
+        let shape = &self.obstacle.shape;
         let is_flat = shape.is_faceted() && self.after.orientation.is_none();
-        let Some(x0) = self.x0.filter(|_| !is_flat && approach > 0.0) else {
-            return straight;
-        };
-        let x0 = row(x0, self.inverse_masses.len(), i);
+        let x0 = row(self.x0.filter(|_| !is_flat)?, self.inverse_masses.len(), i);
         let begun = shape.separation(self.before.inwards(x0 - self.before.place.position));
-        let mean = (self.before.outwards(begun.normal) + up).try_normalize(0.0);
-        let mean = mean.filter(|mean| mean.dot(&up) > 0.0);
-        let reaction = mean.map_or(straight, |mean| mean * (approach / mean.dot(&up)));
-        // One that turns too far within the step would give energy.
         let touches = begun.distance.abs() <= TOUCHING_SHARE * (x - x0).norm();
-        if !touches || (relative * 2.0 + reaction).dot(&reaction) > 0.0 {
-            return straight;
-        }
-        let missed = &mut noted.statistics.missed;
-        *missed = missed.max((reaction - straight).norm() * self.span.h);
-        reaction
+        let mean = mean_normal([self.before.outwards(begun.normal), up]).filter(|_| touches)?;
+        // One that turns too far within the step would give energy.
+        let reaction = mean * (-relative.dot(&up).min(0.0) / mean.dot(&up));
+        ((relative * 2.0 + reaction).dot(&reaction) <= 0.0).then_some(mean)
     }
 
     /// Finds the end of the slide of particle i, whose slip at the end of the step (m/s) friction
@@ -532,6 +533,12 @@ impl Met<'_> {
     fn kept(&self, slip: Vector3<f64>, normal: f64) -> f64 {
         kept(slip, self.friction * normal.max(0.0))
     }
+}
+
+/// Returns the mean of the normals at both ends of a step, unless they are opposite.
+pub(super) fn mean_normal([begun, up]: [Vector3<f64>; 2]) -> Option<Vector3<f64>> {
+    let mean = (begun + up).try_normalize(0.0);
+    mean.filter(|mean| mean.dot(&up) > 0.0)
 }
 
 /// Returns the share of a slip that friction leaves, if it takes at most that much. A particle on

@@ -6,10 +6,11 @@ use super::contact_pair::LeastSpeed;
 use super::cut::Pinched;
 use super::guard::{Bodies, guard};
 use super::held::pass_on;
-use super::impulse::{Impulses, change_in_impact, rebound_speed, shortest_rebound};
+use super::impulse::{Impulses, across, change_in_impact, rebound_speed, shortest_rebound};
 use super::layer::ContactLayer;
 use super::met::{
     MIDDLE, Met, Noted, PointImpact, Rub, SIMULTANEOUS_SHARE, Statistics, Step, TOUCHING_SHARE,
+    mean_normal,
 };
 use super::obstacle::{Obstacle, velocity};
 use crate::columns::{row, set_row};
@@ -217,7 +218,8 @@ impl ContactPhase {
                         particle: i,
                         obstacle: number,
                         normal,
-                        least: LeastSpeed { before: relative, speed, friction: obstacle.friction },
+                        push: normal,
+                        least: LeastSpeed::of_impact(relative, speed, obstacle.friction),
                         carried,
                         share: 1.0,
                         left: 0.0,
@@ -356,17 +358,22 @@ fn touching(
     let contacts = pairs.filter_map(|(i, (number, obstacle))| {
         let (begun, x, v) = (row(step.y0, n, i), row(y1, n, i), row(&y1[3 * n..], n, i));
         let [before, pose] = obstacle.at_ends([step.t, step.t + step.h]);
-        let [first, d] = [begun - before.place.position, x - pose.place.position];
+        let [d0, d] = [begun - before.place.position, x - pose.place.position];
         let near = ROUNDING * (x.norm() + d.norm()) + TOUCHING_SHARE * (x - begun).norm();
         let seen = obstacle.shape.separation(pose.inwards(d));
-        let first = obstacle.shape.separation(before.inwards(first));
+        let first = obstacle.shape.separation(before.inwards(d0));
         let touches = seen.distance.abs().max(first.distance.abs()) <= near;
-        let carried = velocity(&pose, d);
+        let (carried, normal) = (velocity(&pose, d), pose.outwards(seen.normal));
+        let mean = mean_normal([before.outwards(first.normal), normal]);
         touches.then(|| PointImpact {
             particle: i,
             obstacle: number,
-            normal: pose.outwards(seen.normal),
-            least: LeastSpeed { before: v - carried, speed: 0.0, friction: obstacle.friction },
+            normal,
+            push: mean.map_or(normal, |mean| mean / mean.dot(&normal)),
+            least: LeastSpeed {
+                begun: across(row(&step.y0[3 * n..], n, i) - velocity(&before, d0), normal),
+                ..LeastSpeed::of_impact(v - carried, 0.0, obstacle.friction)
+            },
             carried,
             share: MIDDLE,
             left: 0.0,

@@ -2,6 +2,7 @@
 //! with them.
 
 mod bodies;
+mod curved;
 mod implicit;
 mod joint_ends;
 mod jointed;
