@@ -54,7 +54,7 @@ pub(super) fn strike(
             let Some(mut impact) = Impact::new(surface, &pair, (hit, h), motion) else {
                 continue;
             };
-            if let Some(joined) = joined.filter(|_| impact.blow.is_free) {
+            if let Some(joined) = joined {
                 impact.join(joined, motion);
             }
             if !impacts.iter().any(|other| impact.is_same_as(other, surface)) {
@@ -77,7 +77,7 @@ pub(super) fn strike(
         for impact in &impacts {
             guarded.first = guarded.first.min(1.0 - impact.left / h);
             impact.apply(&changes, h, motion);
-            if let Some(JoinedBodies { joints, .. }) = joined {
+            if let Some(JoinedBodies { joints, .. }) = joined.filter(|_| impact.blow.is_free) {
                 impact.blow.note(&changes, joints);
             }
             guarded.impulses += 1;

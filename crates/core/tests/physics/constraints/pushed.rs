@@ -149,3 +149,71 @@ fn boxes_tied_by_a_rope_slide_like_one() {
         assert!((found / expected - 1.0).abs() < 0.02, "{}: {found}, {expected}", method.0);
     }
 }
+
+/// A ball rolls over a plank that is fixed and has a hundredth or a thousandth of its mass: the
+/// force that holds the plank, not its mass, stops the ball.
+#[test]
+fn a_heavy_ball_rolls_over_a_light_plank() {
+    for (mass, method) in [(100.0, ALL[0]), (1000.0, ALL[0]), (100.0, ALL[1]), (100.0, ALL[2])] {
+        let scene = format!(
+            "gravity = [0, -{G}, 0]
+            [[body]]
+            parts = [{{ box = [2, 0.05, 0.4] }}]
+            mass = 1
+            at = [0, 0, 0]
+            friction = 0.5
+            [[body]]
+            parts = [{{ ball = 0.15 }}]
+            mass = {mass}
+            at = [0.2, 0.1751, 0]
+            velocity = [0.5, 0, 0]
+            spin = [0, 0, -3.3333333333333335]
+            [[joint]]
+            body = 0
+            fixed = true"
+        );
+        // The centre of the plank and its eight corners come first.
+        let [end] = places(&scene, method, 9, [0.4]);
+        assert!((end - 0.4).abs() < 1e-4, "{}, {mass} kg: {end}", method.0);
+    }
+}
+
+/// Two jaws of 50 g on sliders hold a box of 2 kg, by friction that could carry twice its weight.
+#[test]
+fn light_jaws_hold_a_heavy_box() {
+    let jaw = |x: f64| {
+        format!(
+            "[[body]]
+            parts = [{{ box = [0.1, 0.3, 0.3] }}]
+            mass = 0.05
+            at = [{x}, 0, 0]
+            friction = 0.5"
+        )
+    };
+    let scene = format!(
+        "gravity = [0, -{G}, 0]
+        {}
+        {}
+        [[body]]
+        parts = [{{ box = [0.4, 0.2, 0.2] }}]
+        mass = 2
+        at = [0, 0, 0]
+        friction = 0.5
+        [[joint]]
+        body = 0
+        slider = {{ axis = [1, 0, 0], force = 40, speed = 1e6 }}
+        [[joint]]
+        body = 1
+        slider = {{ axis = [-1, 0, 0], force = 40, speed = 1e6 }}",
+        jaw(-0.2511),
+        jaw(0.2511)
+    );
+    for (name, control) in [("rk4", Control::Step(1e-3)), ("implicit-euler", Control::Step(2e-3))] {
+        let method = integrators::find(name).unwrap();
+        let mut run = Simulation::new(described(&scene), method, control).unwrap();
+        run.advance_to(0.3).unwrap();
+        let n = 27;
+        let fallen = -run.state()[n + 18];
+        assert!((0.0..3e-4).contains(&fallen), "{name}: {fallen:e} m");
+    }
+}
