@@ -84,7 +84,8 @@ pub(crate) fn jump(
 }
 
 /// Returns the numbers of the taut ropes and of the held ends of joints, and the effects of an
-/// impulse along the row of each, in the state (x, v). `weight` and `turning` are those of [`jump`].
+/// impulse along the row of each, in the state (x, v). `weight` and `turning` are those of
+/// [`jump`].
 pub(crate) fn pulls(
     constraints: &Constraints,
     weight: impl Fn(usize) -> f64,

@@ -416,8 +416,8 @@ impl ContactPair {
     }
 
     /// Returns that impulse where the slip was `begun` (m/s) at the beginning of a step and is
-    /// `slip` (m/s) at its end. One that does not stop is held back along the mean of both, or along
-    /// the latter if the slip has reversed within the step.
+    /// `slip` (m/s) at its end. A slip that does not stop is held back along the mean of both, or
+    /// along the latter if it has reversed within the step.
     fn held_along(
         &self,
         so_far: Vector3<f64>,

@@ -274,8 +274,8 @@ impl Impact {
         own.is_rigid() && bodies(self) == bodies(other) && own.is_at(others)
     }
 
-    /// Changes the motion by the impulse.
-    pub fn apply(&self, changes: &Field, h: f64, motion: &mut Motion) {
+    /// Changes the motion by the impulse. Returns the time (s) for which it changes displacements.
+    pub fn apply(&self, changes: &Field, h: f64, motion: &mut Motion) -> f64 {
         let Blow { contact, impulse, .. } = &self.blow;
         let changed = contact.relative(changes).dot(&contact.normal);
         // A pair that does not rebound stays where it touched; for others, the course from there on
@@ -296,6 +296,7 @@ impl Impact {
         };
         contact.push(impulse, masses, &mut motion.v);
         contact.push(impulse * span, masses, &mut motion.moves);
+        span
     }
 
     /// Returns the arms at the end of the step, if both sides then are as far apart as `delay` (s)

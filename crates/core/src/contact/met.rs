@@ -449,10 +449,10 @@ impl Met<'_> {
         }
     }
 
-    /// Returns the direction in which the obstacle pushes particle i, if that is not the normal `up`
-    /// at the end of the step, where the particle is at x (m) with the velocity `relative` to the
-    /// obstacle (m/s). If it touches from the beginning of the step, the reaction acts along the
-    /// mean of the normals at both ends: on a curved obstacle, or one that turns, that is of
+    /// Returns the direction in which the obstacle pushes particle i, unless that is the normal
+    /// `up` at the end of the step, where the particle is at x (m) with the velocity `relative` to
+    /// the obstacle (m/s). If it touches from the beginning of the step, the reaction acts along
+    /// the mean of the normals at both ends: on a curved obstacle, or one that turns, that is of
     /// order 2.
     fn push(
         &self,

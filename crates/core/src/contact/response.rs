@@ -199,8 +199,8 @@ impl Response {
         self.effect.points.iter().map(|(i, _)| *i as u32)
     }
 
-    /// Changes a field by an impulse (N s or N m s), as far as it is in this direction. The points of the
-    /// bodies must be settled afterwards.
+    /// Changes a field by an impulse (N s or N m s), as far as it is in this direction. The points
+    /// of the bodies must be settled afterwards.
     pub fn push(&self, impulse: Vector3<f64>, field: &mut Field) {
         self.effect.add(self.direction.dot(&impulse), field);
     }
@@ -217,8 +217,9 @@ pub(super) struct Tie {
     /// rate (1/kg).
     effect: Effect,
     mobility: f64,
-    /// Impulse (N s), and the largest one: that which undoes the pull of the rope in the step, or 0.
+    /// Impulse (N s).
     pull: f64,
+    /// Largest impulse (N s): 0, or the one that undoes the pull of the rope in the step.
     most: f64,
 }
 

@@ -74,9 +74,13 @@ pub(super) fn strike(
             break;
         }
         changed |= !impacts.is_empty();
+        // Impulses, and their products with the times for which they change displacements.
+        let mut spans = [0.0; 2];
         for impact in &impacts {
             guarded.first = guarded.first.min(1.0 - impact.left / h);
-            impact.apply(&changes, h, motion);
+            let span = impact.apply(&changes, h, motion);
+            let size = impact.blow.impulse.norm();
+            spans = [spans[0] + size, spans[1] + size * span];
             if let Some(JoinedBodies { joints, .. }) = joined.filter(|_| impact.blow.is_free) {
                 impact.blow.note(&changes, joints);
             }
@@ -92,9 +96,10 @@ pub(super) fn strike(
             }
         }
         let left = impacts.iter().map(|impact| impact.left).fold(0.0, f64::max);
+        let span = if spans[0] > 0.0 { spans[1] / spans[0] } else { left };
         for tie in &ties {
             tie.push(1.0, &mut motion.v);
-            tie.push(left, &mut motion.moves);
+            tie.push(span, &mut motion.moves);
             for i in tie.points() {
                 moved[i as usize] = true;
                 motion.flight.since[i as usize] = 1.0 - left / h;

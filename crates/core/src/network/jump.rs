@@ -156,8 +156,8 @@ pub(crate) fn pass_on(network: &Network, y: &mut [f64]) {
     network.bodies.settle(y);
 }
 
-/// Returns the numbers of the ropes at their lengths and of the joints at an end, and the effects of
-/// an impulse of each, in the state y.
+/// Returns the numbers of the ropes at their lengths and of the joints at an end, and the effects
+/// of an impulse of each, in the state y.
 pub(crate) fn pulls(network: &Network, y: &[f64]) -> Vec<(usize, Vec<Pushed>)> {
     if !has_ropes(network) {
         return vec![];

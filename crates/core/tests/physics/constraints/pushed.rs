@@ -217,3 +217,31 @@ fn light_jaws_hold_a_heavy_box() {
         assert!((0.0..3e-4).contains(&fallen), "{name}: {fallen:e} m");
     }
 }
+
+/// A ball rolls up a light plank that its weight has tipped onto the limit of a hinge.
+#[test]
+fn the_limit_of_a_hinge_bears_a_heavy_ball() {
+    let limit = 0.2_f64;
+    for (mass, method) in [(100.0, ALL[0]), (1000.0, ALL[0]), (1000.0, ALL[1])] {
+        let scene = format!(
+            "gravity = [0, -{G}, 0]
+            [[body]]
+            parts = [{{ box = [2, 0.05, 0.4] }}]
+            mass = 1
+            at = [0, 0, 0]
+            friction = 0.5
+            [[body]]
+            parts = [{{ ball = 0.15 }}]
+            mass = {mass}
+            at = [-0.6, 0.177, 0]
+            velocity = [1.5, 0, 0]
+            spin = [0, 0, -10]
+            [[joint]]
+            body = 0
+            hinge = {{ at = [0, 0, 0], axis = [0, 0, 1], limits = [-{limit}, {limit}] }}"
+        );
+        let found = acceleration(places(&scene, method, 9, [0.16, 0.24, 0.32]), 0.08);
+        let expected = -5.0 / 7.0 * G * limit.sin() * limit.cos();
+        assert!((found / expected - 1.0).abs() < 0.02, "{}, {mass} kg: {found}", method.0);
+    }
+}
