@@ -39,8 +39,8 @@ struct Directed {
     /// Change of the relative velocity of the closest points by an impulse (1/kg).
     mobility: Matrix3<f64>,
     rolling: Option<Rolling>,
-    /// Direction of an impulse without friction, if it is not the normal. Its component along the
-    /// normal is 1.
+    /// Direction of the impulse of a frictionless contact, if it is not the normal. Its component
+    /// along the normal is 1.
     push: Option<Vector3<f64>>,
     /// Changes by impulses in all directions that matter, if constraints pass them on.
     responses: Vec<Response>,
@@ -70,7 +70,7 @@ impl Rolling {
             arms().fold(Vector3::zeros(), |sum, arm| sum + arm.turn(&field))
         });
         let yields = Matrix3::from_columns(&turned.collect::<Vec<_>>());
-        // A hinge leaves one axis.
+        // A body on a hinge turns about one axis only: the matrix has no inverse.
         let least = LEAST_MOBILITY * yields.norm();
         self.inertia = yields.pseudo_inverse(least).unwrap_or_default();
     }
@@ -178,8 +178,8 @@ impl ContactPair {
         self.directed = Some(Box::new(Directed { arms, mobility, rolling, push: None, responses }));
     }
 
-    /// Lets impulses without friction act in a direction whose component along the normal is 1, if
-    /// constraints pass on impulses in all directions.
+    /// Sets the direction of the impulse of a frictionless contact; its component along the normal
+    /// is 1. The contact must be [joined](Self::join), and not as a smooth one.
     pub fn push_along(&mut self, push: Vector3<f64>) {
         if let Some(directed) = self.directed.as_mut().filter(|_| push != self.normal) {
             directed.push = Some(push);
@@ -415,9 +415,10 @@ impl ContactPair {
         }
     }
 
-    /// Returns that impulse where the slip was `begun` (m/s) at the beginning of a step and is
-    /// `slip` (m/s) at its end. A slip that does not stop is held back along the mean of both, or
-    /// along the latter if it has reversed within the step.
+    /// Returns the impulse of friction (N s), after `so_far` and of at most `most`, where the slip
+    /// is `begun` (m/s) at the beginning of a step and `slip` (m/s) at its end. It acts against the
+    /// mean of both slips if the contact slides on in about the same direction, else against the
+    /// latter.
     fn held_along(
         &self,
         so_far: Vector3<f64>,

@@ -353,7 +353,7 @@ impl Soft {
     }
 }
 
-/// Pass over such contacts.
+/// Pass of friction over such contacts.
 struct FrictionPass<'a> {
     contacts: &'a mut [Soft],
     v: &'a mut [Vector3<f64>],

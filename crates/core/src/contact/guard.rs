@@ -100,7 +100,8 @@ fn guard_with(
     let mut guarded = Guarded::default();
     motion.cover(surface, candidates);
     let joined = bodies.joints.map(|joints| JoinedBodies { joints, y: y1 });
-    // Friction counts once in a step, whatever constraints move after it.
+    // Friction acts in the first turn of contact and constraints: each further turn would add as
+    // much friction again.
     let mut changed = !bodies.are_struck
         && apply_friction(surface, (h, joined), candidates, motion, &mut guarded);
     if surface.is_rigid_or_elastic() {

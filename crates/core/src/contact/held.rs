@@ -89,7 +89,7 @@ fn apply(
     for i in 0..n {
         before[i] = row(&y1[3 * n..], n, i);
     }
-    // What is sudden has a time after it, or acts at the end.
+    // A rebound leaves a part of the step after it, and a strike acts at the end of the step.
     let lasts = impacts.iter().all(|impact| impact.left == 0.0 && impact.share < 1.0);
     let times = Interval { t: step.t, h: step.h };
     let mut ties =

@@ -245,7 +245,7 @@ impl Impact {
             // What parts them before the end of the step has acted inside the range.
             speed += (along - end).min(0.0);
         } else if !is_free {
-            // They do not approach at the end of the step either, and friction acts until then.
+            // A contact that lasts stops the approach and the slip at the end of the step.
             speed = (along - end).max(0.0);
             before = normal * along + across(ends[1], normal);
             let approach = weighted(&weights, &pair.of(&motion.moves)).dot(&normal);

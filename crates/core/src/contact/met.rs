@@ -107,8 +107,7 @@ pub(super) struct PointImpact {
     /// Number of the obstacle.
     pub obstacle: usize,
     pub normal: Vector3<f64>,
-    /// Direction in which the obstacle pushes, without friction. Its component along the normal
-    /// is 1.
+    /// Direction of the obstacle's push without friction; its component along the normal is 1.
     pub push: Vector3<f64>,
     pub least: LeastSpeed,
     /// Velocity of the obstacle there (m/s).
@@ -466,7 +465,7 @@ impl Met<'_> {
         let begun = shape.separation(self.before.inwards(x0 - self.before.place.position));
         let touches = begun.distance.abs() <= TOUCHING_SHARE * (x - x0).norm();
         let mean = mean_normal([self.before.outwards(begun.normal), up]).filter(|_| touches)?;
-        // One that turns too far within the step would give energy.
+        // Where the normal turns too far within the step, the mean would add energy.
         let reaction = mean * (-relative.dot(&up).min(0.0) / mean.dot(&up));
         ((relative * 2.0 + reaction).dot(&reaction) <= 0.0).then_some(mean)
     }

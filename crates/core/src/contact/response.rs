@@ -26,8 +26,9 @@ pub(crate) trait Joints {
     /// effects of an impulse of each, in the state y.
     fn pulls(&self, y: &[f64]) -> Vec<(usize, Vec<Pushed>)>;
 
-    /// Returns the numbers of those that are taut, and such an impulse of each in a second, by the
-    /// forces in the state y at time t (s).
+    /// Returns the numbers of the taut ropes and of the held ends of joints, and the tension of
+    /// each in the state y at time t (s): the impulse that it exerts in a second, in multiples of
+    /// the one of [`pulls`](Self::pulls).
     fn tensions(&self, t: f64, y: &[f64]) -> Vec<(usize, f64)>;
 
     /// Adds these effects to the velocities in the state y.
@@ -95,8 +96,10 @@ impl Effect {
         }
     }
 
-    /// Returns the changes by the constraints and by these: of the velocities of the centres of
-    /// bodies (m/s) and of their angular momenta (kg m2/s), and of the velocities of points (m/s).
+    /// Returns the changes of motion after impulses and the response of the constraints to them.
+    /// Before that response, the impulses change the velocity (m/s) of the centre and the angular
+    /// momentum (kg m2/s) of each body in `on_bodies`, and the velocity (m/s) of each particle in
+    /// `on_points`.
     fn passed_on(
         joined: JoinedBodies,
         solids: &[Solid],
@@ -219,14 +222,14 @@ pub(super) struct Tie {
     mobility: f64,
     /// Impulse (N s).
     pull: f64,
-    /// Largest impulse (N s): 0, or the one that undoes the pull of the rope in the step.
+    /// Largest impulse (N s): 0, or the tension of the rope times the length of the step.
     most: f64,
 }
 
 impl Tie {
-    /// Lists those of the constraints, with the velocities v (m/s) before the impacts. Contact that
-    /// lasts for a time, up to the state of the joined bodies, may take back what the rope has
-    /// pulled in that time.
+    /// Lists the taut ropes and the joints at an end, with the velocities v (m/s) before the
+    /// impacts. Contact that lasts for the interval `lasting`, at whose end the bodies are in the
+    /// given state, can slacken a rope by at most its tension times that interval.
     pub fn all(
         joined: JoinedBodies,
         solids: &[Solid],
@@ -259,7 +262,8 @@ impl Tie {
         ties.filter(|tie| tie.mobility > 0.0).collect()
     }
 
-    /// Lets [`press`](Self::press) be given velocities in place of their changes by impulses.
+    /// Prepares for calls of [`press`](Self::press) with velocities instead of changes of
+    /// velocities.
     pub fn read_velocities(&mut self) {
         self.rate = -self.rate.max(0.0);
     }

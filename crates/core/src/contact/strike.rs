@@ -74,7 +74,8 @@ pub(super) fn strike(
             break;
         }
         changed |= !impacts.is_empty();
-        // Impulses, and their products with the times for which they change displacements.
+        // Sum of the impulses (N s), and of their products with the times (s) for which they change
+        // displacements.
         let mut spans = [0.0; 2];
         for impact in &impacts {
             guarded.first = guarded.first.min(1.0 - impact.left / h);

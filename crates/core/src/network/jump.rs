@@ -373,9 +373,9 @@ pub(crate) fn least_tension(network: &Network, t: f64, y: &[f64]) -> Option<(usi
     constraints::least(tensions(network, t, y))
 }
 
-/// Lists the tensions of taut ropes, and of held ends of joints, in the state y at time t (s), each
-/// with the number of the constraint: the impulse of which [`pulls`] returns the effects, over a
-/// time.
+/// Lists the tensions of taut ropes and of held ends of joints in the state y at time t (s), each
+/// with the number of the constraint. A tension times a duration (s) is an impulse, in multiples of
+/// the one whose effects [`pulls`] returns.
 pub(crate) fn tensions(network: &Network, t: f64, y: &[f64]) -> Vec<(usize, f64)> {
     if taut(network).next().is_none() { vec![] } else { rigid::tensions(network, t, y) }
 }

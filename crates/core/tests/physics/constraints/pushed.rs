@@ -150,30 +150,41 @@ fn boxes_tied_by_a_rope_slide_like_one() {
     }
 }
 
+/// Particle that is the centre of the ball of [`plank`]: the centre of the plank and its eight
+/// corners come first.
+const BALL: usize = 9;
+
+/// A ball of some mass (kg) that begins at a place (m), rolling at a speed (m/s), on a plank of
+/// 1 kg that a joint holds.
+fn plank(mass: f64, ([x, y], speed): ([f64; 2], f64), joint: &str) -> String {
+    let radius = 0.15;
+    format!(
+        "gravity = [0, -{G}, 0]
+        [[body]]
+        parts = [{{ box = [2, 0.05, 0.4] }}]
+        mass = 1
+        at = [0, 0, 0]
+        friction = 0.5
+        [[body]]
+        parts = [{{ ball = {radius} }}]
+        mass = {mass}
+        at = [{x}, {y}, 0]
+        velocity = [{speed}, 0, 0]
+        spin = [0, 0, {}]
+        [[joint]]
+        body = 0
+        {joint}",
+        -speed / radius
+    )
+}
+
 /// A ball rolls over a plank that is fixed and has a hundredth or a thousandth of its mass: the
 /// force that holds the plank, not its mass, stops the ball.
 #[test]
 fn a_heavy_ball_rolls_over_a_light_plank() {
     for (mass, method) in [(100.0, ALL[0]), (1000.0, ALL[0]), (100.0, ALL[1]), (100.0, ALL[2])] {
-        let scene = format!(
-            "gravity = [0, -{G}, 0]
-            [[body]]
-            parts = [{{ box = [2, 0.05, 0.4] }}]
-            mass = 1
-            at = [0, 0, 0]
-            friction = 0.5
-            [[body]]
-            parts = [{{ ball = 0.15 }}]
-            mass = {mass}
-            at = [0.2, 0.1751, 0]
-            velocity = [0.5, 0, 0]
-            spin = [0, 0, -3.3333333333333335]
-            [[joint]]
-            body = 0
-            fixed = true"
-        );
-        // The centre of the plank and its eight corners come first.
-        let [end] = places(&scene, method, 9, [0.4]);
+        let scene = plank(mass, ([0.2, 0.1751], 0.5), "fixed = true");
+        let [end] = places(&scene, method, BALL, [0.4]);
         assert!((end - 0.4).abs() < 1e-4, "{}, {mass} kg: {end}", method.0);
     }
 }
@@ -222,25 +233,11 @@ fn light_jaws_hold_a_heavy_box() {
 #[test]
 fn the_limit_of_a_hinge_bears_a_heavy_ball() {
     let limit = 0.2_f64;
+    let hinge =
+        format!("hinge = {{ at = [0, 0, 0], axis = [0, 0, 1], limits = [-{limit}, {limit}] }}");
     for (mass, method) in [(100.0, ALL[0]), (1000.0, ALL[0]), (1000.0, ALL[1])] {
-        let scene = format!(
-            "gravity = [0, -{G}, 0]
-            [[body]]
-            parts = [{{ box = [2, 0.05, 0.4] }}]
-            mass = 1
-            at = [0, 0, 0]
-            friction = 0.5
-            [[body]]
-            parts = [{{ ball = 0.15 }}]
-            mass = {mass}
-            at = [-0.6, 0.177, 0]
-            velocity = [1.5, 0, 0]
-            spin = [0, 0, -10]
-            [[joint]]
-            body = 0
-            hinge = {{ at = [0, 0, 0], axis = [0, 0, 1], limits = [-{limit}, {limit}] }}"
-        );
-        let found = acceleration(places(&scene, method, 9, [0.16, 0.24, 0.32]), 0.08);
+        let scene = plank(mass, ([-0.6, 0.177], 1.5), &hinge);
+        let found = acceleration(places(&scene, method, BALL, [0.16, 0.24, 0.32]), 0.08);
         let expected = -5.0 / 7.0 * G * limit.sin() * limit.cos();
         assert!((found / expected - 1.0).abs() < 0.02, "{}, {mass} kg: {found}", method.0);
     }
